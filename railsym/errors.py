@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Exceptions of railsym: each says what was asked, what exists, and what to do."""
+
+
+class RailsymError(Exception):
+    """Base of every exception that railsym raises on purpose."""
+
+
+class VehicleFileError(RailsymError, ValueError):
+    """A vehicle file, a configuration or a parameter name that cannot be used."""
+
+
+class ContactError(RailsymError, ValueError):
+    """Contact parameters or loads outside what the contact theory covers."""
+
+
+class ModelError(RailsymError, ValueError):
+    """A vehicle whose equations cannot be assembled or linearised as asked."""
+
+
+class ConvergenceError(RailsymError, RuntimeError):
+    """An iteration that did not reach its tolerance."""
+
+
+class CoreError(RailsymError, RuntimeError):
+    """The C library refused a call; the message carries its status."""
