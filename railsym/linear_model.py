@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The linear equations of a vehicle rolling at constant speed on straight track.
+
+    M q'' + C(V) q' + K q = 0,        C(V) = C0 + V C1 + C2 / V
+
+``V C1`` holds the gyroscopic moments of the turning wheelsets, ``C2 / V`` the creep forces. Internal (Maxwell) coordinates
+have zero rows and columns in M: their rows are first-order equations. The angle through which a wheelset has turned is
+cyclic: its column in K is zero and it is no state.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from railsym.errors import ModelError
+
+_MATRICES = ("mass", "stiffness", "damping_constant", "damping_speed", "damping_inverse_speed")
+
+
+@dataclass(frozen=True, eq=False)
+class LinearModel:
+    """Matrices of the linear equations of motion and what their rows mean.
+
+    Parameters
+    ----------
+    coordinates : tuple of str, length n
+        Names of the coordinates, "body.dof", or "group.instance.s" for the damper elongation of a Maxwell element.
+    mass, stiffness : ndarray, shape (n, n)
+        M (kg, kg m, kg m2) and K (N/m, N/rad, ...).
+    damping_constant, damping_speed, damping_inverse_speed : ndarray, shape (n, n)
+        C0, C1 and C2 of C(V) = C0 + V C1 + C2 / V with V in m/s.
+    first_order : ndarray of bool, shape (n,)
+        True for internal coordinates, whose rows and columns in M are zero.
+    cyclic : ndarray of bool, shape (n,)
+        True for wheelset spin angles, whose columns in K are zero.
+    vehicle, contact : object, optional
+        The vehicle and the resolved linear contact that the matrices were made from.
+    mirror : tuple (permutation, sign) of two (n,) arrays, optional
+        Left-right mirroring: coordinate i of the mirrored motion is ``sign[i] * q[permutation[i]]``. Without it
+        `railsym.symmetry` looks for one in the vehicle.
+    translation : ndarray, shape (n,), optional
+        Uniform displacement along the track; from the names of the coordinates when not given.
+
+    Raises
+    ------
+    ModelError
+        Matrices of the wrong shape or with entries that are not finite, inertia on a first-order coordinate, stiffness on a
+        cyclic one.
+    """
+
+    coordinates: tuple[str, ...]
+    mass: np.ndarray
+    stiffness: np.ndarray
+    damping_constant: np.ndarray
+    damping_speed: np.ndarray
+    damping_inverse_speed: np.ndarray
+    first_order: np.ndarray
+    cyclic: np.ndarray
+    vehicle: Any = None
+    contact: Any = None
+    mirror: tuple[np.ndarray, np.ndarray] | None = None
+    translation: np.ndarray | None = None
+
+    def __post_init__(self):
+        n = len(self.coordinates)
+        for name in _MATRICES:
+            matrix = getattr(self, name)
+            if matrix.shape != (n, n):
+                raise ModelError(f"{name} has shape {matrix.shape}; {n} coordinates need ({n}, {n})")
+            # a sum is not finite if any entry is not: one pass without a temporary
+            if not np.isfinite(matrix.sum()):
+                row, column = np.argwhere(~np.isfinite(matrix))[0]
+                raise ModelError(f"{name}[{self.coordinates[row]}, {self.coordinates[column]}] = {matrix[row, column]} "
+                                 "is not finite; check the vehicle's parameters and the wheel loads")
+        if self.mass[self.first_order].any():
+            raise ModelError("first-order coordinates have no inertia, but the mass matrix has entries in their rows")
+        if self.stiffness[:, self.cyclic].any():
+            raise ModelError("a cyclic coordinate exerts no force, but its column of the stiffness matrix is not zero")
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates, n."""
+        return len(self.coordinates)
+
+    @cached_property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states: coordinates without cyclic ones, rates ("name.rate") of the second-order ones, internal ones."""
+        parts = _state_parts(self)
+        name = self.coordinates
+        return (tuple(name[i] for i in parts.position) + tuple(name[i] + ".rate" for i in parts.second)
+                + tuple(name[i] for i in parts.first))
+
+    def damping(self, speed: float) -> np.ndarray:
+        """C(V), shape (n, n), at a speed in m/s.
+
+        Raises
+        ------
+        ModelError
+            A speed that is not positive and finite: creepages are referred to the speed.
+        """
+        _check_speed(speed)
+        return self.damping_constant + speed * self.damping_speed + self.damping_inverse_speed / speed
+
+    def damping_slope(self, speed: float) -> np.ndarray:
+        """dC/dV, shape (n, n), at a speed in m/s."""
+        _check_speed(speed)
+        return self.damping_speed - self.damping_inverse_speed / speed**2
+
+    def dynamic_stiffness(self, eigenvalue: complex, speed: float) -> np.ndarray:
+        """T(lambda, V) = lambda^2 M + lambda C(V) + K, complex, shape (n, n); lambda in 1/s, V in m/s."""
+        return eigenvalue**2 * self.mass + eigenvalue * self.damping(speed) + self.stiffness
+
+    def dynamic_stiffness_slope(self, eigenvalue: complex, speed: float) -> np.ndarray:
+        """dT/dlambda = 2 lambda M + C(V), complex, shape (n, n)."""
+        return 2 * eigenvalue * self.mass + self.damping(speed)
+
+    def state_matrix(self, speed: float) -> np.ndarray:
+        """A of x' = A x at a speed in m/s, shape (ns, ns), rows as `states`; a fresh array on every call."""
+        _check_speed(speed)
+        constant, index, with_speed, with_inverse_speed = self._state_matrix_parts
+        matrix = constant.copy()
+        matrix.ravel()[index] += speed * with_speed + with_inverse_speed / speed
+        return matrix
+
+    def state_matrix_slope(self, speed: float) -> np.ndarray:
+        """dA/dV at a speed in m/s, shape (ns, ns)."""
+        _check_speed(speed)
+        constant, index, with_speed, with_inverse_speed = self._state_matrix_parts
+        matrix = np.zeros_like(constant)
+        matrix.ravel()[index] = with_speed - with_inverse_speed / speed**2
+        return matrix
+
+    @cached_property
+    def _state_matrix_parts(self):
+        """A0, the flat places where A depends on V, and the values of A1 and A2 there."""
+        return _state_matrix_parts(self)
+
+    def state_vector(self, shape: np.ndarray, eigenvalue: complex) -> np.ndarray:
+        """The state of the motion q = shape exp(lambda t): coordinates, rates, internal coordinates; shape (ns,)."""
+        parts = _state_parts(self)
+        return np.concatenate([shape[parts.position], eigenvalue * shape[parts.second], shape[parts.first]])
+
+    def shape_vector(self, state: np.ndarray, eigenvalue: complex) -> np.ndarray:
+        """Coordinates (n, ...) of eigenvectors of A (ns, ...): cyclic ones are rate / lambda, and zero for lambda = 0."""
+        parts = _state_parts(self)
+        shape = np.zeros((self.size,) + state.shape[1:], dtype=complex)
+        positions, rates, internal = np.split(state, [len(parts.position), len(parts.position) + len(parts.second)])
+        shape[parts.second] = rates / np.where(eigenvalue == 0, np.inf, eigenvalue)
+        shape[parts.position] = positions
+        shape[parts.first] = internal
+        return shape
+
+    @cached_property
+    def uniform_translation(self) -> np.ndarray | None:
+        """All bodies displaced by 1 m along the track, shape (n,); None when no coordinate is named "body.x"."""
+        if self.translation is not None:
+            return self.translation
+        along = np.array([name.endswith(".x") and name.count(".") == 1 for name in self.coordinates], dtype=float)
+        return along if along.any() else None
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """A vehicle linearised at one speed: x' = A x.
+
+    Attributes
+    ----------
+    A : ndarray, shape (ns, ns)
+        State matrix, SI units.
+    states : tuple of str, length ns
+        Names of the states.
+    speed : float
+        m/s.
+    model : LinearModel
+        The matrices that A was made from.
+    """
+
+    A: np.ndarray
+    states: tuple[str, ...]
+    speed: float
+    model: LinearModel
+
+    @classmethod
+    def of(cls, model: LinearModel, speed: float) -> Linearisation:
+        """Linearisation of a model at a speed in m/s."""
+        return cls(model.state_matrix(speed), model.states, float(speed), model)
+
+    def modes(self, **options):
+        """Modes at this speed, a `railsym.modes.Modes`; options as `railsym.modes.modes`."""
+        from railsym.modes import modes
+        return modes(self.model, self.speed, **options)
+
+
+@dataclass(frozen=True)
+class _StateParts:
+    """Indices of the coordinates behind the three parts of the state."""
+
+    position: np.ndarray
+    second: np.ndarray
+    first: np.ndarray
+
+
+def _state_parts(model: LinearModel) -> _StateParts:
+    return _StateParts(np.flatnonzero(~model.first_order & ~model.cyclic), np.flatnonzero(~model.first_order),
+                       np.flatnonzero(model.first_order))
+
+
+def _check_speed(speed: float) -> None:
+    if not 0.0 < speed < np.inf:
+        raise ModelError(f"speed {speed} m/s: a finite speed above 0 m/s is needed, because creepages are referred to it")
+
+
+def _state_matrix_parts(model: LinearModel):
+    """Assemble A0 and the entries that change with speed.
+
+    With v = q' of second-order coordinates and internal coordinates s:
+    s' = -Css^-1 (Ksv q + Csv v + Kss s) and v' = -Mvv^-1 (Kvv q + Kvs s + Cvv(V) v + Cvs s').
+    """
+    parts = _state_parts(model)
+    v, s = parts.second, parts.first
+    if any(matrix[s].any() or matrix[:, s].any() for matrix in (model.damping_speed, model.damping_inverse_speed)):
+        raise ModelError("the damping of internal (Maxwell) coordinates depends on speed; state matrices need it constant")
+    count, n_position = len(v), len(parts.position)
+    matrix = np.zeros((n_position + count + len(s),) * 2)
+    rate, internal = slice(n_position, n_position + count), slice(n_position + count, None)
+    matrix[np.arange(n_position), n_position + np.searchsorted(v, parts.position)] = 1.0
+    inverse = _BlockInverse(model.mass[np.ix_(v, v)])
+    force = np.hstack([model.stiffness[np.ix_(v, parts.position)], model.damping_constant[np.ix_(v, v)],
+                       model.stiffness[np.ix_(v, s)]])
+    if len(s):
+        matrix[internal] = -_solve_internal(model, parts)
+        coupling = model.damping_constant[np.ix_(v, s)]
+        if coupling.any():
+            force += coupling @ matrix[internal]
+    matrix[rate] = -(inverse @ force)
+    changing = (model.damping_speed != 0) | (model.damping_inverse_speed != 0)
+    columns = np.flatnonzero(changing[:, v].any(axis=0))
+    with_speed = -(inverse @ model.damping_speed[np.ix_(v, v[columns])])
+    with_inverse_speed = -(inverse @ model.damping_inverse_speed[np.ix_(v, v[columns])])
+    row, column = np.nonzero((with_speed != 0) | (with_inverse_speed != 0))
+    index = (n_position + row) * len(matrix) + n_position + columns[column]
+    return matrix, index, with_speed[row, column], with_inverse_speed[row, column]
+
+
+def _solve_internal(model: LinearModel, parts: _StateParts) -> np.ndarray:
+    """Css^-1 [Ksq, Csv, Kss], shape (number of internal coordinates, ns)."""
+    v, s = parts.second, parts.first
+    right = np.hstack([model.stiffness[np.ix_(s, parts.position)], model.damping_constant[np.ix_(s, v)],
+                       model.stiffness[np.ix_(s, s)]])
+    damping = model.damping_constant[np.ix_(s, s)]
+    diagonal = damping.diagonal()
+    if not diagonal.all():
+        name = model.coordinates[s[np.flatnonzero(diagonal == 0)[0]]]
+        raise ModelError(f"internal coordinate {name} has no damping, so it has no first-order equation; "
+                         "give the Maxwell element a damping above 0 N*s/m or use a spring")
+    if np.count_nonzero(damping) == len(s):
+        return right / diagonal[:, None]
+    return np.linalg.solve(damping, right)
+
+
+class _BlockInverse:
+    """Inverse of a mass matrix made of blocks on the diagonal (one a body), applied by blocks of equal size."""
+
+    def __init__(self, mass: np.ndarray):
+        filled = mass != 0
+        size = len(mass)
+        reach = size - 1 - np.argmax(filled[:, ::-1], axis=1) if size else np.zeros(0, int)
+        end = np.flatnonzero(np.maximum.accumulate(np.maximum(reach, np.arange(size))) == np.arange(size)) + 1
+        start = np.concatenate([[0], end[:-1]]).astype(int)
+        self.blocks = []
+        for width in np.unique(end - start):
+            index = start[end - start == width][:, None] + np.arange(width)
+            block = mass[index[:, :, None], index[:, None, :]]
+            try:
+                self.blocks.append((index, 1.0 / block if width == 1 else np.linalg.inv(block)))
+            except np.linalg.LinAlgError as error:
+                raise ModelError("the mass matrix is singular: a second-order coordinate without inertia") from error
+
+    def __matmul__(self, right: np.ndarray) -> np.ndarray:
+        result = np.empty_like(right)
+        for index, inverse in self.blocks:
+            rows = right[index]
+            result[index] = inverse * rows if index.shape[1] == 1 else inverse @ rows
+        return result
