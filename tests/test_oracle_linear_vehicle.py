@@ -217,3 +217,30 @@ def test_edge_hessian_is_the_cone_on_an_edge():
 
         numeric = np.array([(gradient(1e-5 * e) - gradient(-1e-5 * e)) / 2e-5 for e in np.eye(6)])
         assert np.allclose(numeric, _edge_hessian(side, b0, r0, slope), rtol=0, atol=1e-9)
+
+
+def test_axlebox_hangs_from_the_axle_as_a_pendulum():
+    """Frequency sqrt(m g c / (I + m c^2)) of a box whose centre is c below the axle."""
+    mass, inertia, below = 90.0, 4.0, 0.1
+    axle = stand_ins.wheelset("wheelset1", 0.0, 1000.0, (800.0, 90.0, 800.0),
+                              axlebox=(mass, (1.0, inertia, 3.0), 1.0, (0.0, 0.0, below)))
+    model = independent_model(stand_ins.vehicle([axle], []), None, 0.0)
+    for label in ("left", "right"):
+        place = model.names.index(f"wheelset1.axlebox_{label}.pitch")
+        assert model.stiffness[place, place] == pytest.approx(mass * 9.81 * below)
+        assert model.mass[place, place] == pytest.approx(inertia + mass * below**2)
+    roll = model.names.index("wheelset1.roll")
+    assert model.stiffness[roll, roll] == pytest.approx(2 * mass * 9.81 * below)
+
+
+def test_maxwell_spring_carries_the_difference_of_elongations():
+    """f = k (e - s): no force anywhere when the damper has taken the whole elongation."""
+    coach = stand_ins.coach()
+    model = independent_model(coach, None, 0.0, preload=False)
+    springs = independent_model(stand_ins.vehicle(coach.bodies, [e for e in coach.elements if e.type != "maxwell"]),
+                                None, 0.0, preload=False)
+    motion = np.where(np.array(model.names) == "car.y", 1.0, 0.0)
+    motion[model.first_order] = 1.0  # first marker on the bogie, second on the car: elongation +y
+    force = model.stiffness @ motion
+    assert np.allclose(force[~model.first_order], springs.stiffness @ motion[~model.first_order], rtol=0, atol=1e-6)
+    assert np.allclose(force[model.first_order], 0.0, atol=1e-6)
