@@ -277,8 +277,8 @@ def creepage_amplitude(conicity, amplitude, wheel_radius):
     """Creepage amplitude that stands for a hunting wheelset in the quasi-linearisation.
 
     ``|lam| A/r0``: exact for a wheelset that shifts by A without yawing and for
-    the wheelsets of a long rigid bogie in kinematic hunting; an upper bound for
-    shorter and softer bogies (docs/linear_contact.md).
+    the wheelsets of a long rigid bogie in kinematic hunting, which a shorter
+    bogie does not reach in that motion (docs/linear_contact.md).
 
     Parameters
     ----------
