@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Write the cffi binding: ``python build_ffi.py interface.h output.c``."""
+
+import pathlib
+import sys
+
+import cffi
+
+
+def main(interface, output):
+    """Emit the API-mode binding of the declarations in ``interface``."""
+    builder = cffi.FFI()
+    builder.cdef(pathlib.Path(interface).read_text(encoding="ascii"))
+    builder.set_source("railsym._railsym", '#include "railsym.h"')
+    builder.emit_c_code(str(output))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

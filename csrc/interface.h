@@ -1,0 +1,68 @@
+/* Declarations that cffi reads (no preprocessor here); railsym.h includes this file and
+ * holds the contracts. */
+
+enum {
+	RS_OK = 0,
+	RS_NO_MEMORY = 1,
+	RS_BAD_INDEX = 2,
+	RS_BAD_SIZE = 3,
+	RS_NOT_FINITE = 4
+};
+
+enum {
+	RS_LAW_NONE = 0,
+	RS_LAW_SPRING_DAMPER = 1,
+	RS_LAW_MAXWELL = 2,
+	RS_LAW_BUMP_STOP = 3,
+	RS_LAW_ACTUATOR_FORCE = 4,
+	RS_LAW_ACTUATOR_LENGTH = 5
+};
+
+typedef struct {
+	int n;               /* points */
+	const double *x;     /* n, increasing */
+	const double *c;     /* 4 (n - 1): value = c0 + t (c1 + t (c2 + t c3)), t = x - x[piece] */
+} rs_curve;
+
+typedef struct {
+	int kind;
+	double preload;      /* N */
+	double stiffness;    /* N/m */
+	double damping;      /* N s/m */
+	double clearance;    /* m */
+	double command;      /* N or m */
+	const rs_curve *stiffness_curve;
+	const rs_curve *damping_curve;
+} rs_law;
+
+typedef struct {
+	const char *name;
+	int inputs;
+	int coordinates;
+	int entries;
+	int has_law;
+	const unsigned char *row;        /* entries */
+	const unsigned char *column;     /* entries */
+	const short *slots;              /* coordinates x 5: q u a sin cos, -1 for none */
+	const char *const *input_names;  /* inputs */
+	const char *const *input_units;  /* inputs */
+} rs_kernel_info;
+
+typedef struct rs_model rs_model;
+
+int rs_kernel_count(void);
+const rs_kernel_info *rs_kernel_describe(int kernel);
+int rs_kernel_lanes(void);
+int rs_kernel_real(int kernel, const double *in, const rs_law *const *laws, const double *seed,
+                   double *r, double *S);
+int rs_kernel_complex(int kernel, const double *in, const rs_law *law, const double *seed,
+                      double *r, double *S);
+
+rs_model *rs_model_create(int coordinates, const unsigned char *is_angle);
+void rs_model_free(rs_model *model);
+int rs_model_add(rs_model *model, int kernel, int count, const double *in, const int *index,
+                 const rs_law *const *laws);
+int rs_model_set_input(rs_model *model, int kernel, int slot, const double *values);
+int rs_model_residual(rs_model *model, const double *q, const double *u, const double *a, double *r);
+int rs_model_pencil(rs_model *model, const double *q, const double *u, const double *a,
+                    const double *seed, double *r, double *S);

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The C interface of railsym.
+ *
+ * Axes: x along the track in the direction of travel, y to the right, z down, right-handed
+ * (EN 14363, EN 13848, CONTACT). Left wheel: side -1, right wheel: side +1; wheelsets are
+ * numbered from the leading one. Rolling forward turns a wheelset at -V/r0 about y. Creepages
+ * are velocities of the wheel against the rail over V; spin is positive about the normal that
+ * points into the rail; forces are those on the wheel. SI units, angles in rad.
+ *
+ * Coordinates q of the whole model, their rates u = dq/dt and accelerations a: n each.
+ * Residual r = inertia - gravity + element forces + contact forces; r = 0 is the motion.
+ * Pencil S = cq dr/dq + cu dr/du + ca dr/da for seed = (cq, cu, ca): (1,0,0) is the stiffness
+ * matrix, (0,1,0) the damping matrix, (0,0,1) the mass matrix. Internal states are coordinates
+ * whose acceleration does not appear.
+ *
+ * rs_kernel_real       one kernel on rs_kernel_lanes() instances
+ *   Given     kernel   number below rs_kernel_count()
+ *             in       inputs x lanes, lane index fastest, as named by rs_kernel_describe
+ *             laws     lanes pointers (or NULL where has_law is 0)
+ *             seed     3, (cq, cu, ca)
+ *   Returned  r        coordinates x lanes
+ *             S        entries x lanes, or NULL: skipped
+ *   Status    RS_OK, RS_BAD_INDEX
+ * rs_kernel_complex    the same on one complex instance: numbers are (re, im) pairs; for
+ *                      derivatives by the complex step (Squire and Trapp 1998, SIAM Rev. 40)
+ *
+ * rs_model_create      an empty model
+ *   Given     coordinates  n > 0
+ *             is_angle     n, 1 where sin and cos of the coordinate are wanted
+ *   Returned  the model, or NULL (no memory, or n <= 0); free with rs_model_free
+ * rs_model_add         instances of one kernel; at most one call a kernel
+ *   Given     in       count x inputs: parameters in their slots; coordinate slots are ignored
+ *             index    count x coordinates of the kernel: number of the model's coordinate, or
+ *                      -1 for one that does not exist (held at zero)
+ *             laws     count pointers, kept, not copied; NULL where has_law is 0
+ *   Status    RS_OK, RS_BAD_INDEX (kernel, index out of range, or added before), RS_BAD_SIZE
+ *             (count <= 0), RS_NO_MEMORY
+ * rs_model_set_input   new values of one input slot for every instance of a kernel
+ *   Given     values   count
+ *   Status    RS_OK, RS_BAD_INDEX
+ * rs_model_residual, rs_model_pencil
+ *   Given     q u a    n each, unchanged
+ *             seed     3
+ *   Returned  r        n (pencil: may be NULL)
+ *             S        n x n, row by row
+ *   Status    RS_OK, RS_NOT_FINITE (r has a NaN or infinity; r and S are as computed)
+ *   Notes     No allocation. A model is used by one thread at a time: its lanes are its
+ *             work space. Same machine, same input: same bytes.
+ */
+#ifndef RAILSYM_H
+#define RAILSYM_H
+
+#include "interface.h"
+
+#endif

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The only module that touches the C library; above it everything is float64 arrays."""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from railsym._railsym import ffi, lib
+from railsym.errors import CoreError, ModelError
+
+_MEANING = {
+    lib.RS_NO_MEMORY: "no memory",
+    lib.RS_BAD_INDEX: "an index is outside its range",
+    lib.RS_BAD_SIZE: "a size is not positive, or force laws are missing",
+    lib.RS_NOT_FINITE: "the residual is not finite",
+}
+
+LAWS = {
+    "none": lib.RS_LAW_NONE,
+    "spring_damper": lib.RS_LAW_SPRING_DAMPER,
+    "maxwell": lib.RS_LAW_MAXWELL,
+    "bump_stop": lib.RS_LAW_BUMP_STOP,
+    "actuator_force": lib.RS_LAW_ACTUATOR_FORCE,
+    "actuator_length": lib.RS_LAW_ACTUATOR_LENGTH,
+}
+
+
+def _check(status, what):
+    if status != lib.RS_OK:
+        raise CoreError(f"{what}: {_MEANING.get(status, f'unknown status {status}')}")
+
+
+def _doubles(array):
+    return ffi.from_buffer("double[]", array)
+
+
+def _vector(values, size, what):
+    """A contiguous float64 array of ``size`` numbers, or an error that names both sizes."""
+    array = np.ascontiguousarray(values, dtype=float)
+    if array.size != size:
+        raise ModelError(f"{what}: {size} numbers are needed, {array.size} were given")
+    return array
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """Description of one generated kernel.
+
+    Attributes
+    ----------
+    number : int
+    name : str
+    inputs, units : tuple of str
+        Input names in slot order, with their units.
+    coordinates : int
+    pattern : ndarray of int, shape (entries, 2)
+        Row and column of each pencil entry.
+    slots : ndarray of int, shape (coordinates, 5)
+        Input slots of q, u, a, sin, cos of each coordinate, -1 for none.
+    has_law : bool
+    """
+
+    number: int
+    name: str
+    inputs: tuple
+    units: tuple
+    coordinates: int
+    pattern: np.ndarray
+    slots: np.ndarray
+    has_law: bool
+
+    def slot(self, name):
+        """Slot number of an input name."""
+        return self.inputs.index(name)
+
+
+@cache
+def kernels():
+    """Name -> Kernel of every kernel in the library."""
+    found = {}
+    for number in range(lib.rs_kernel_count()):
+        info = lib.rs_kernel_describe(number)
+        names = [ffi.string(info.input_names[k]).decode() for k in range(info.inputs)]
+        units = [ffi.string(info.input_units[k]).decode() for k in range(info.inputs)]
+        rows = ffi.unpack(info.row, info.entries), ffi.unpack(info.column, info.entries)
+        slots = np.array(ffi.unpack(info.slots, 5 * info.coordinates)).reshape(-1, 5)
+        pattern = np.array([list(part) for part in rows]).T
+        name = ffi.string(info.name).decode()
+        found[name] = Kernel(number, name, tuple(names), tuple(units), info.coordinates,
+                             pattern, slots, bool(info.has_law))
+    return found
+
+
+def lanes():
+    """Instances that a kernel computes at once."""
+    return lib.rs_kernel_lanes()
+
+
+class Laws:
+    """Force laws in C memory; kept alive as long as a model refers to them.
+
+    Parameters
+    ----------
+    records : list of dict
+        Keys ``kind`` (a key of LAWS), ``preload``, ``stiffness``, ``damping``,
+        ``clearance``, ``command`` (SI) and ``stiffness_curve``, ``damping_curve``
+        (a pair of breakpoints (n,) and coefficients (n - 1, 4), or None).
+    """
+
+    def __init__(self, records):
+        self._keep = []
+        self.array = ffi.new("rs_law[]", len(records))
+        for law, record in zip(self.array, records, strict=True):
+            law.kind = LAWS[record["kind"]]
+            for key in ("preload", "stiffness", "damping", "clearance", "command"):
+                setattr(law, key, record.get(key, 0.0))
+            for key in ("stiffness_curve", "damping_curve"):
+                setattr(law, key, self._curve(record.get(key)))
+        self.pointers = ffi.new("rs_law *[]", [ffi.addressof(self.array, k) for k in range(len(records))])
+
+    def _curve(self, table):
+        if table is None:
+            return ffi.NULL
+        x, c = (np.ascontiguousarray(part, dtype=float) for part in table)
+        curve = ffi.new("rs_curve *", {"n": len(x), "x": _doubles(x), "c": _doubles(c)})
+        self._keep += [curve, x, c]
+        return curve
+
+    def set_preload(self, values):
+        """Set the preload (N) of every law; shape (n,)."""
+        for law, value in zip(self.array, values, strict=True):
+            law.preload = value
+
+    def set_command(self, number, value):
+        """Set the command (N or m) of one actuator."""
+        self.array[number].command = value
+
+
+def kernel_real(name, inputs, seed, law=None):
+    """Residual and pencil of one kernel for one instance.
+
+    Parameters
+    ----------
+    inputs : array_like, shape (inputs,)
+    seed : array_like, shape (3,)
+        (cq, cu, ca).
+    law : dict, optional
+        Force law record, see `Laws`.
+
+    Returns
+    -------
+    residual : ndarray, shape (coordinates,)
+    pencil : ndarray, shape (coordinates, coordinates)
+    """
+    kernel, width = kernels()[name], lanes()
+    packed = np.repeat(_vector(inputs, len(kernel.inputs), name)[:, None], width, axis=1)
+    laws = Laws([law or {"kind": "none"}] * width)
+    r = np.empty((kernel.coordinates, width))
+    entries = np.empty((len(kernel.pattern), width))
+    _check(lib.rs_kernel_real(kernel.number, _doubles(np.ascontiguousarray(packed)), laws.pointers,
+                              _doubles(_vector(seed, 3, "seed")), _doubles(r), _doubles(entries)), name)
+    return r[:, 0].copy(), _dense(kernel, entries[:, 0])
+
+
+def kernel_complex(name, inputs, seed, law=None):
+    """As `kernel_real` with complex inputs, residual and pencil (for the complex step)."""
+    kernel = kernels()[name]
+    packed = np.ascontiguousarray(inputs, dtype=complex)
+    if packed.size != len(kernel.inputs):
+        raise ModelError(f"{name}: {len(kernel.inputs)} inputs are needed, {packed.size} were given")
+    laws = Laws([law or {"kind": "none"}])
+    r = np.empty(kernel.coordinates, dtype=complex)
+    entries = np.empty(len(kernel.pattern), dtype=complex)
+    _check(lib.rs_kernel_complex(kernel.number, _doubles(packed.view(float)), laws.pointers[0],
+                                 _doubles(_vector(seed, 3, "seed")), _doubles(r.view(float)),
+                                 _doubles(entries.view(float))), name)
+    return r, _dense(kernel, entries)
+
+
+def _dense(kernel, entries):
+    matrix = np.zeros((kernel.coordinates, kernel.coordinates), dtype=entries.dtype)
+    matrix[kernel.pattern[:, 0], kernel.pattern[:, 1]] = entries
+    return matrix
+
+
+class Assembly:
+    """The assembled model in C: residual and pencil over all coordinates.
+
+    Parameters
+    ----------
+    is_angle : array_like of bool, shape (n,)
+        Coordinates whose sine and cosine the kernels need.
+    """
+
+    def __init__(self, is_angle):
+        flags = np.ascontiguousarray(is_angle, dtype=np.uint8)
+        self.size = len(flags)
+        model = lib.rs_model_create(self.size, ffi.from_buffer("unsigned char[]", flags))
+        if model == ffi.NULL:
+            raise ModelError(f"a model of {self.size} coordinates cannot be created")
+        self._model = ffi.gc(model, lib.rs_model_free)
+        self._counts, self._laws = {}, {}
+
+    def add(self, name, inputs, index, laws=None):
+        """Add every instance of one kernel.
+
+        Parameters
+        ----------
+        name : str
+        inputs : array_like, shape (count, inputs)
+            Parameters in their slots; coordinate slots are ignored.
+        index : array_like of int, shape (count, coordinates)
+            Coordinate numbers, -1 for one that does not exist.
+        laws : Laws, optional
+        """
+        kernel = kernels()[name]
+        inputs = np.ascontiguousarray(inputs, dtype=float)
+        index = np.ascontiguousarray(index, dtype=np.intc)
+        if inputs.shape != (len(index), len(kernel.inputs)) or index.shape[1:] != (kernel.coordinates,):
+            raise ModelError(f"{name}: inputs {inputs.shape} and index {index.shape} do not fit "
+                             f"{len(kernel.inputs)} inputs and {kernel.coordinates} coordinates")
+        pointers = laws.pointers if laws else ffi.NULL
+        _check(lib.rs_model_add(self._model, kernel.number, len(index), _doubles(inputs),
+                                ffi.from_buffer("int[]", index), pointers), f"adding {name}")
+        self._counts[name], self._laws[name] = len(index), laws
+
+    def set_input(self, name, slot_name, values):
+        """Give one input of every instance of a kernel new values, shape (count,)."""
+        kernel = kernels()[name]
+        values = _vector(values, self._counts[name], f"{name}.{slot_name}")
+        _check(lib.rs_model_set_input(self._model, kernel.number, kernel.slot(slot_name), _doubles(values)),
+               f"{name}.{slot_name}")
+
+    def residual(self, q, u, a):
+        """Residual r(q, u, a), shape (n,); inputs are left as they are."""
+        state = [_vector(v, self.size, what) for v, what in zip((q, u, a), "qua", strict=True)]
+        r = np.empty(self.size)
+        _check(lib.rs_model_residual(self._model, *map(_doubles, state), _doubles(r)), "residual")
+        return r
+
+    def pencil(self, q, u, a, seed):
+        """Matrix cq dr/dq + cu dr/du + ca dr/da, shape (n, n), for seed (cq, cu, ca)."""
+        state = [_vector(v, self.size, what) for v, what in zip((q, u, a), "qua", strict=True)]
+        r, matrix = np.empty(self.size), np.empty((self.size, self.size))
+        _check(lib.rs_model_pencil(self._model, *map(_doubles, state), _doubles(_vector(seed, 3, "seed")),
+                                   _doubles(r), _doubles(matrix)), "pencil")
+        return matrix
