@@ -107,10 +107,12 @@ class _Reader:
         number, unit, origin = self.split(key, entry, origin, field.unit)
         value = checked_value(key, number, schema.Field(field.unit, "any", field.shapes))
         try:
-            value = to_si(value, unit, field.unit)
+            value = checked_value(key, to_si(value, unit, field.unit), field)
         except UnitError as error:
             raise Problem(key, entry, str(error)) from None
-        return Quantity(checked_value(key, value, field), field.unit, origin)
+        except Problem as problem:
+            raise Problem(key, entry, problem.text) from None
+        return Quantity(value, field.unit, origin)
 
     def split(self, key, entry, origin, example):
         """Value, unit and citation of an entry."""
@@ -136,7 +138,7 @@ class _Reader:
         return origin
 
     def read_groups(self, section, top, read):
-        """Apply `read(key, name, table)` to each table of a section."""
+        """Result of `read(key, name, table)` for each table of a section, by name."""
         groups = top.get(section, {})
         if not isinstance(groups, dict):
             raise Problem(section, groups, "a table of tables is needed")
@@ -205,13 +207,14 @@ class _Reader:
         self.table(key, table, table if isinstance(table, dict) else (), ("type", "at"))
         type_name = self.text(f"{key}.type", table["type"], schema.ELEMENT_TYPES)
         kind = schema.ELEMENT_TYPES[type_name]
+        extra = ["type", "at", *(c.key for c in kind.curves)]
+        extra += ["axis"] if kind.axis in ("optional", "required") else []
+        extra += ["mode"] if kind.modes else []
+        self.table(key, table, (*kind.fields, "orientation", "origin", *extra))
         axis = self.read_axis(key, table, kind)
         mode = self.text(f"{key}.mode", table.get("mode"), kind.modes) if kind.modes else None
         curves = {c.key: self.text(f"{key}.{c.key}", table[c.key], self.curve_names) for c in kind.curves if c.key in table}
         fields = self.chosen_fields(key, table, kind, mode, curves)
-        extra = ["type", "at", *(c.key for c in kind.curves)]
-        extra += ["axis"] if kind.axis in ("optional", "required") else []
-        extra += ["mode"] if kind.modes else []
         origin = self.read_fields(key, table, fields | {"orientation": schema.ORIENTATION}, f"{name}.", extra)
         instances = self.read_instances(key, name, table["at"], origin)
         return ElementGroup(name, type_name, axis, mode, curves, instances)
