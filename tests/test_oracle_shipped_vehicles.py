@@ -48,10 +48,12 @@ def test_wheel_loads_of_the_coach():
 
 def test_wheel_loads_of_the_pendolino():
     """Two axleboxes and two pairs of trusses hang on each wheelset's share; the inner wheelsets are 300 kg heavier."""
-    _, loads = static_state(railsym.vehicle.load_vehicle("pendolino"))
-    outer, inner = (hand_modes.wheel_load(39000.0, 3100.0, own + 2 * 90.0 + 2 * (11.0 + 20.0)) for own in (1250., 1550.))
+    vehicle = railsym.vehicle.load_vehicle("pendolino")
+    _, loads = static_state(vehicle)
+    hanging = 2 * 90.0 + 2 * (11.0 + 20.0)
+    outer, inner = (hand_modes.wheel_load(39000.0, 3100.0, own + hanging) for own in (1250.0, 1550.0))
     expected = {1: outer, 2: inner, 3: inner, 4: outer}
-    numbers = [int(body.name[-1]) for body in railsym.vehicle.load_vehicle("pendolino").bodies if body.kind == "wheelset"]
+    numbers = [int(body.name[-1]) for body in vehicle.bodies if body.kind == "wheelset"]
     assert loads == pytest.approx(np.repeat([expected[n] for n in numbers], 2), rel=1e-9)
 
 

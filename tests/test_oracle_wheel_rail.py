@@ -85,6 +85,17 @@ def test_constant_spin_force_is_seen_by_the_check_above(axes):
 
 
 @pytest.mark.parametrize("side", [-1, 1])
+def test_load_alone(side):
+    """Without creep and contact stiffness the load's own terms stand out, on yaw -N0 b0 delta0 = -450 N m/rad."""
+    wheel = one_wheel(side, slope=0.01, normal_stiffness=0.0, f11=0.0, f22=0.0, f23=0.0, f33=0.0)
+    stiffness, _ = wheel_matrices(wheel, SPEED, ContactTerms(load_point="wheelset"))
+    exact = -np.array([generalised_force(wheel, 1e-30j * e, np.zeros(6), True).imag / 1e-30 for e in np.eye(6)]).T
+    # sin(delta0), cos(delta0) to first order: N0 delta0^2/2 = 3 N.
+    assert np.allclose(stiffness, exact, rtol=0, atol=6.0)
+    assert stiffness[3, 3] == pytest.approx(-450.0)
+
+
+@pytest.mark.parametrize("side", [-1, 1])
 def test_exact_tilt_at_a_steep_contact(side):
     """With cos and sin of the slope the creep rows hold at any slope; without spin there is no constant force."""
     wheel = one_wheel(side, slope=0.4, load=0.0, normal_stiffness=0.0, f23=0.0, f33=0.0)
