@@ -53,8 +53,7 @@ def wheel_rail():
     shift = tape.let("yc", q[1] - par["r0"] * s[1])
     radius = tape.let("r", par["r0"] + par["side"] * par["lam"] * shift)
     slope = tape.let("delta", par["slope"] + par["side"] * par["grad"] * shift)
-    load = _normal_load(tape, par, q, s, shift)
-    normal_rows = _normal_rows(tape, par, c, slope, load)
+    normal_rows = _normal_rows(tape, par, q, s, c, shift)
 
     normal = tape.let("nrm", par["side"] * slope * across + sm.Matrix([0, 0, 1]))
     arm = tape.let("arm", par["side"] * par["b0"] * axle + radius * down)
@@ -69,17 +68,29 @@ def wheel_rail():
 
 
 def _normal_load(tape, par, q, s, shift):
-    """N = N0 + kH p; p = z + side b0 sin(roll) + side slope yc + grad yc^2 / 2."""
-    lift = q[2] + par["side"] * (par["b0"] * s[1] + par["slope"] * shift)
-    penetration = tape.let("pen", lift + par["grad"] * shift * shift / 2)
-    return tape.let("N", par["N0"] + par["kH"] * penetration)
+    """N = N0 + kH p, with roll = sin(roll) and yaw = sin(yaw) to this order:
+
+    p = z + side (b0 roll + slope yc) + (grad - slope/b0) yc^2 / 2
+        - y roll + (r0 + b0 slope) roll^2 / 2 - b0 slope yaw^2 / 2.
+
+    The first line ties the penetration to the contact slope; the second says that the
+    contact keeps its place on the rail while the wheelset shifts, rolls and yaws over it.
+    """
+    hollow = tape.let("hollow", par["grad"] - par["slope"] / par["b0"])
+    lever = tape.let("lever", par["r0"] + par["b0"] * par["slope"])
+    tied = q[2] + par["side"] * (par["b0"] * s[1] + par["slope"] * shift) + hollow * shift * shift / 2
+    stays = lever * s[1] * s[1] / 2 - q[1] * s[1] - par["b0"] * par["slope"] * s[0] * s[0] / 2
+    penetration = tape.let("pen", tied + stays)
+    return hollow, lever, tape.let("N", par["N0"] + par["kH"] * penetration)
 
 
-def _normal_rows(tape, par, c, slope, load):
+def _normal_rows(tape, par, q, s, c, shift):
     """N dp/dq: the normal force does work on the penetration only."""
-    lateral = tape.let("Nd", load * par["side"] * slope)
-    roll = (load * par["side"] * par["b0"] - lateral * par["r0"]) * c[1]
-    return [0, lateral, load, 0, roll, 0]
+    hollow, lever, load = _normal_load(tape, par, q, s, shift)
+    along = tape.let("py", par["side"] * par["slope"] + hollow * shift)
+    roll = par["side"] * par["b0"] - par["r0"] * along - q[1] + lever * s[1]
+    yaw = -par["b0"] * par["slope"] * s[0] * c[0]
+    return [0, load * (along - s[1]), load, load * yaw, load * roll * c[1], 0]
 
 
 def _creep_rows(tape, par, speed, directions, turning, arm, contact, omega):
