@@ -31,7 +31,7 @@ class ContactTerms:
 
     slope_gradient : the N0 eps term (gravitational stiffness).
     load_point : "potential" as above; "wheelset": the load's point is fixed in the wheelset's yaw-roll axes, which
-        adds -N0 (r0 + b0 delta0) on roll and -N0 b0 delta0 on yaw; "edge": instead of the eps term the exact second
+        adds -N0 (r0 + b0 delta0) on roll, -N0 b0 delta0 on yaw and smaller products of delta0; "edge": instead of the eps term the exact second
         derivative of p for a cone on a sharp-edged rail, in which the contact stays on the rail.
     tilt : contact plane tilted by delta0 in the velocity rows and so in the directions of the forces. "none";
         "first_order": -s delta0 z' - b0 delta0 roll' in eta, s delta0 spin' in the spin creepage; "exact": with
@@ -94,6 +94,10 @@ def _normal_stiffness(wheel, terms):
     if terms.load_point == "wheelset":
         stiffness[ROLL, ROLL] -= wheel.load * (r0 + b0 * slope)
         stiffness[YAW, YAW] -= wheel.load * b0 * slope
+        # Products of delta0 with lam and eps: changed lever arm of the side force, and cos(delta).
+        stiffness[Z] -= wheel.load * s * slope * wheel.slope_gradient * shift
+        stiffness[ROLL] -= wheel.load * slope * (wheel.conicity + b0 * wheel.slope_gradient) * shift
+        stiffness[SPIN, YAW] += wheel.load * s * r0 * slope
     return stiffness
 
 
