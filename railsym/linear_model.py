@@ -154,6 +154,19 @@ class LinearModel:
         shape[parts.first] = internal
         return shape
 
+    def left_vector(self, state: np.ndarray) -> np.ndarray:
+        """y (n, ...) with y^H T(lambda, V) = 0 from left eigenvectors of A (ns, ...).
+
+        The rate and internal rows of A are -G^-1 times the forces, G = [[M, Cvs], [0, Css]]: so G^H y is their part of it.
+        """
+        parts = _state_parts(self)
+        v, s = parts.second, parts.first
+        both = np.concatenate([v, s])
+        inertia = np.hstack([self.mass[np.ix_(both, v)], self.damping_constant[np.ix_(both, s)]])
+        left = np.zeros((self.size,) + state.shape[1:], dtype=complex)
+        left[both] = np.linalg.solve(inertia.T, state[len(parts.position):])
+        return left
+
     @cached_property
     def uniform_translation(self) -> np.ndarray | None:
         """All bodies displaced by 1 m along the track, shape (n,); None when no coordinate is named "body.x"."""

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A small model with the slow motions of a large one, and an estimate of what it leaves out.
+
+Galerkin projection on the undamped modes of the elastic structure below a frequency limit, taken with the Maxwell springs
+released. Internal (Maxwell) coordinates and spin angles are kept as they are, so only the inertia of fast motions is lost:
+their flexibility comes back, to first order, through `Reduction.correction`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from railsym.linear_model import LinearModel
+
+KEEP_ALL = 24          # second-order coordinates: a model this small is not worth reducing
+_DEPENDENT = 1e-8      # share of a unit vector outside the span of the others below which it is dropped
+
+
+@dataclass(frozen=True, eq=False)
+class Reduction:
+    """A projected model.
+
+    Attributes
+    ----------
+    model : LinearModel
+        The reduced matrices, in coordinates z with q = basis z.
+    basis : ndarray, shape (n, m)
+        Real basis vectors.
+    full : LinearModel
+        The model that was reduced.
+    dropped, dropped_stiffness : ndarray, shapes (n, k) and (k,)
+        Mass-normalised modes left out and their omega^2, (rad/s)^2.
+    """
+
+    model: LinearModel
+    basis: np.ndarray
+    full: LinearModel
+    dropped: np.ndarray
+    dropped_stiffness: np.ndarray
+
+    def expand(self, shape: np.ndarray) -> np.ndarray:
+        """Reduced coordinates (m, ...) as coordinates of the full model (n, ...)."""
+        return self.basis @ shape
+
+    def correction(self, eigenvalue, speed, right, left):
+        """First-order effect of the dropped modes on eigenvalues of the reduced model.
+
+        Parameters
+        ----------
+        eigenvalue : ndarray, shape (k,)
+            1/s.
+        speed : float
+            m/s.
+        right, left : ndarray, shape (m, k)
+            Vectors with T x = 0 and y^H T = 0 in the reduced model.
+
+        Returns
+        -------
+        change : ndarray, shape (k,)
+            Estimate of (eigenvalue of the full model) - eigenvalue, 1/s.
+        missing : ndarray, shape (n, k)
+            What the dropped modes add to the full shapes.
+        """
+        x, y = self.expand(right), self.expand(left)
+        full, damping, modes = self.full, self.full.damping(speed), self.dropped
+        residual = full.mass @ (x * eigenvalue**2) + damping @ (x * eigenvalue) + full.stiffness @ x
+        left_residual = (full.mass.T @ (y * eigenvalue.conj()**2) + damping.T @ (y * eigenvalue.conj()) + full.stiffness.T @ y)
+        amplitude = -(modes.T @ residual) / (self.dropped_stiffness[:, None] + eigenvalue**2)
+        slope = ((full.mass @ (x * (2 * eigenvalue)) + damping @ x) * y.conj()).sum(axis=0)
+        change = -((modes.T @ left_residual).conj() * amplitude).sum(axis=0) / slope
+        return change, modes @ amplitude
+
+
+def reduce_model(model: LinearModel, frequency_limit: float, extra: np.ndarray | None = None) -> Reduction:
+    """Project a model on its elastic modes up to a frequency.
+
+    Parameters
+    ----------
+    model : LinearModel
+        The model, or one half of a symmetric one.
+    frequency_limit : float
+        Hz; modes of the elastic structure up to here are kept.
+    extra : ndarray, shape (n, k), optional
+        Real shapes to hold besides.
+
+    Returns
+    -------
+    Reduction
+        With ``basis`` the identity when the model has at most `KEEP_ALL` coordinates with inertia.
+    """
+    moving = np.flatnonzero(~model.first_order & ~model.cyclic)
+    kept_alone = np.flatnonzero(model.first_order | model.cyclic)
+    if len(moving) <= KEEP_ALL:
+        nothing = np.zeros((model.size, 0))
+        return Reduction(model, np.eye(model.size), model, nothing, np.zeros(0))
+    square, modes = _elastic_modes(model, moving)
+    slow = square < (2 * np.pi * frequency_limit) ** 2
+    wanted = [modes[:, slow]]
+    translation = model.uniform_translation
+    if translation is not None and translation.any():
+        wanted.insert(0, translation[moving, None])
+    if extra is not None:
+        wanted.append(extra[moving])
+    shapes = _orthonormal(np.hstack(wanted), model.mass[np.ix_(moving, moving)])
+    basis = np.zeros((model.size, shapes.shape[1] + len(kept_alone)))
+    basis[moving, :shapes.shape[1]] = shapes
+    basis[kept_alone, shapes.shape[1] + np.arange(len(kept_alone))] = 1.0
+    dropped = np.zeros((model.size, np.count_nonzero(~slow)))
+    dropped[moving] = modes[:, ~slow]
+    return Reduction(_projected(model, basis, kept_alone), basis, model, dropped, square[~slow])
+
+
+def _elastic_modes(model: LinearModel, moving):
+    """omega^2 and mass-normalised modes of the elastic structure, Maxwell springs released, wheels not rolling."""
+    from scipy.linalg import eigh
+
+    internal = np.flatnonzero(model.first_order)
+    stiffness = model.stiffness[np.ix_(moving, moving)]
+    if len(internal):
+        released = np.linalg.solve(model.stiffness[np.ix_(internal, internal)], model.stiffness[np.ix_(internal, moving)])
+        stiffness = stiffness - model.stiffness[np.ix_(moving, internal)] @ released
+    # creep forces make K unsymmetric; what two opposite entries agree on is the elastic part
+    other = stiffness.T
+    elastic = np.where(stiffness * other > 0, np.sign(stiffness) * np.minimum(np.abs(stiffness), np.abs(other)), 0.0)
+    return eigh(elastic, model.mass[np.ix_(moving, moving)], check_finite=False)
+
+
+def _orthonormal(shapes, mass):
+    """Basis of the span of shapes, orthonormal in the mass metric, nearly dependent shapes left out."""
+    shapes = shapes / np.sqrt((shapes * (mass @ shapes)).sum(axis=0))
+    square, directions = np.linalg.eigh(shapes.T @ mass @ shapes)
+    keep = square > _DEPENDENT
+    return shapes @ (directions[:, keep] / np.sqrt(square[keep]))
+
+
+def _projected(model: LinearModel, basis, kept_alone) -> LinearModel:
+    count = basis.shape[1]
+    first_order, cyclic = np.zeros(count, bool), np.zeros(count, bool)
+    first_order[count - len(kept_alone):] = model.first_order[kept_alone]
+    cyclic[count - len(kept_alone):] = model.cyclic[kept_alone]
+    translation = model.uniform_translation
+    if translation is not None:
+        translation = np.linalg.lstsq(basis, translation, rcond=None)[0] if translation.any() else np.zeros(count)
+    names = tuple(f"basis{i}" for i in range(count - len(kept_alone))) + tuple(model.coordinates[i] for i in kept_alone)
+    matrices = (model.mass, model.stiffness, model.damping_constant, model.damping_speed, model.damping_inverse_speed)
+    return LinearModel(names, *(basis.T @ (matrix @ basis) for matrix in matrices), first_order, cyclic, translation=translation)

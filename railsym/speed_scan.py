@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where modes cross a damping ratio as the speed rises.
+
+The eigenvalues of a reduced model are computed with left and right vectors at a few speeds. Modes of neighbouring speeds are
+matched by biorthogonality; each path is interpolated by the cubic through both eigenvalues and their derivatives; the interval
+is halved where a path is not smooth or comes near a criterion without clearly crossing. `SpeedScan.polish` then solves a
+crossing on the full matrices, so a reported speed owes nothing to the reduction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from railsym.constant_speed import deflate
+from railsym.errors import ConvergenceError
+from railsym.linear_model import LinearModel
+from railsym.polish import EigenPoint, polish_crossing, polish_eigenvalue
+from railsym.reduction import Reduction, reduce_model
+
+_FIRST_STEP = 0.4          # in log(speed): ten intervals from 5 to 250 m/s
+_SMALLEST_STEP = 2e-3      # in log(speed): paths that are not resolved at 0.2 % of the speed are reported
+_SIMILAR = 0.5             # product of two biorthogonalities: 1 for one and the same mode
+_WATCH = 0.12              # modes within this of the highest damping ratio asked for are followed closely
+_SMOOTH = 0.05             # kink of a path, relative to the eigenvalue, that similar vectors make credible
+_CLEAR = 0.005             # kink so small that the vectors need not be alike: nearly equal modes mix freely
+_NEUTRAL = 1e-9            # |Re lambda| / |lambda| of a mode without damping, after rounding
+_REDUCTION_ERROR = 0.01    # relative correction of a watched eigenvalue above which the basis is enriched
+_GRID = np.linspace(0.0, 1.0, 17)
+
+
+@dataclass(frozen=True, eq=False)
+class ScanNode:
+    """Oscillatory modes (Im > 0) of the reduced model at one speed; vectors in columns."""
+
+    speed: float
+    eigenvalue: np.ndarray
+    slope: np.ndarray                 # d(eigenvalue)/d(log V)
+    state_right: np.ndarray
+    state_left: np.ndarray            # scaled to state_left^H state_right = 1
+    right: np.ndarray
+    left: np.ndarray
+    divergent: np.ndarray             # real positive eigenvalues
+
+    @property
+    def position(self) -> float:
+        return float(np.log(self.speed))
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing:
+    """A path of the reduced model crosses a damping ratio; `direction` +1 where damping is lost as the speed rises."""
+
+    damping_ratio: float
+    direction: int
+    position: float                   # log(V), V in m/s
+    eigenvalue: complex
+    path: int
+    ends: tuple                       # ((node, mode), (node, mode)) of the interval
+
+    @property
+    def nearest(self):
+        """Node and mode of the end that lies nearer."""
+        middle = 0.5 * (self.ends[0][0].position + self.ends[1][0].position)
+        return self.ends[0] if self.position < middle else self.ends[1]
+
+
+@dataclass(eq=False)
+class SpeedScan:
+    """What a scan found.
+
+    Attributes
+    ----------
+    model : LinearModel
+        The full model.
+    reduction : Reduction
+        The reduced one.
+    damping_ratios : tuple of float
+        The criteria.
+    crossings : list of Crossing
+        As the reduced model has them, in the order of speed.
+    nodes : list of ScanNode
+        Speeds at which the reduced eigenproblem was solved, ascending; path i starts as mode i of the first.
+    warnings : list of str
+        Intervals in which a path could not be resolved.
+    """
+
+    model: LinearModel
+    reduction: Reduction
+    damping_ratios: tuple
+    known: int
+    crossings: list = field(default_factory=list)
+    nodes: list = field(default_factory=list)
+    warnings: list = field(default_factory=list)
+
+    def polish(self, crossing: Crossing) -> EigenPoint | None:
+        """The crossing on the full matrices; None, with a warning, when there is none within reach."""
+        (first, _), (second, _) = crossing.ends
+        margin = 0.2 * (second.position - first.position) + 0.01
+        node, k = crossing.nearest
+        right, left = self.reduction.expand(node.right[:, k]), self.reduction.expand(node.left[:, k])
+        try:
+            point = polish_crossing(self.model, np.exp(crossing.position), crossing.eigenvalue, right, left, crossing.damping_ratio)
+            if abs(np.log(point.speed) - crossing.position) < margin and abs(point.eigenvalue / crossing.eigenvalue - 1) < 0.1:
+                return point
+        except ConvergenceError:
+            pass
+        return self._polish_halves(crossing, first, second)
+
+    def _polish_halves(self, crossing, first, second):
+        """Look for the crossing again in a narrower interval."""
+        if second.position - first.position > 2 * _SMALLEST_STEP:
+            middle = self.node(np.exp(0.5 * (first.position + second.position)))
+            for pair in ((first, middle), (middle, second)):
+                for found in examine(*pair, match(*pair), self.damping_ratios)[1]:
+                    if (found.damping_ratio, found.direction) == (crossing.damping_ratio, crossing.direction):
+                        if abs(found.eigenvalue / crossing.eigenvalue - 1) < 0.1:
+                            return self.polish(found)
+        self.warnings.append(f"a crossing expected near {np.exp(crossing.position):.4g} m/s, {abs(crossing.eigenvalue) / 6.2832:.3g} Hz "
+                             "was not found on the full model; ask for verify=True")
+        return None
+
+    def polish_start(self, path: int) -> EigenPoint:
+        """A mode of the lowest speed on the full matrices."""
+        node = self.nodes[0]
+        return polish_eigenvalue(self.model, node.speed, node.eigenvalue[path], self.reduction.expand(node.right[:, path]),
+                                 self.reduction.expand(node.left[:, path]))
+
+    def node(self, speed) -> ScanNode:
+        """Solve the reduced eigenproblem at a speed in m/s."""
+        from scipy.linalg import eig
+
+        reduced = self.reduction.model
+        deflated = deflate(reduced, speed, self.known)
+        value, left, right = eig(deflated.matrix, left=True, right=True, check_finite=False, overwrite_a=not self.known)
+        above = np.flatnonzero(value.imag > 0)
+        divergent = value.real[(value.imag == 0) & (value.real > _NEUTRAL * np.abs(value).max())]
+        value = value[above]
+        right, left = deflated.restore(value, right[:, above], left[:, above])
+        left = left / (left.conj() * right).sum(axis=0).conj()
+        x, y = reduced.shape_vector(right, value), reduced.left_vector(left)
+        loss = ((2 * value * (reduced.mass @ x) + reduced.damping(speed) @ x) * y.conj()).sum(axis=0)
+        slope = -value * ((reduced.damping_slope(speed) @ x) * y.conj()).sum(axis=0) / loss * speed
+        return ScanNode(float(speed), value, slope, right, left, x, y, divergent)
+
+    def follow(self, first, second, paths):
+        """Resolve one interval, recursively; returns the path number of each mode of the second node."""
+        pairs = match(first, second)
+        resolved, crossings = examine(first, second, pairs, self.damping_ratios, paths)
+        if not resolved and second.position - first.position > 2 * _SMALLEST_STEP:
+            middle = self.node(np.exp(0.5 * (first.position + second.position)))
+            return self.follow(middle, second, self.follow(first, middle, paths))
+        if not resolved:
+            self.warnings.append(f"a mode could not be followed between {first.speed:.4g} and {second.speed:.4g} m/s")
+        self.crossings += crossings
+        self.nodes.append(second)
+        following = np.full(len(second.eigenvalue), -1)
+        following[pairs[1]] = paths[pairs[0]]
+        return following
+
+
+def excess(eigenvalue, damping_ratio):
+    """Re(lambda) + zeta |lambda|, 1/s: positive where the damping ratio is below zeta."""
+    return np.real(eigenvalue) + damping_ratio * np.abs(eigenvalue)
+
+
+def is_below(eigenvalue, damping_ratio):
+    """Is the damping ratio below zeta by more than rounding?"""
+    return excess(eigenvalue, damping_ratio) > _NEUTRAL * np.abs(eigenvalue)
+
+
+def scan_speeds(model: LinearModel, damping_ratios, speed_range, frequency_limit) -> SpeedScan:
+    """Follow the oscillatory modes of a model over speed and find where they cross damping ratios.
+
+    Parameters
+    ----------
+    model : LinearModel
+        A whole model or one half of a symmetric one.
+    damping_ratios : sequence of float
+        Criteria; 0 is real part = 0.
+    speed_range : (float, float)
+        m/s.
+    frequency_limit : float
+        Hz, up to which elastic modes enter the reduced model.
+
+    Returns
+    -------
+    SpeedScan
+    """
+    low, high = np.log(speed_range)
+    speeds = np.exp(np.linspace(low, high, 1 + max(1, int(np.ceil((high - low) / _FIRST_STEP)))))
+    known = deflate(model, speed_range[0]).chain.shape[1]
+    scan = SpeedScan(model, reduce_model(model, frequency_limit), tuple(damping_ratios), known)
+    nodes = _first_nodes(scan, speeds)
+    scan.nodes.append(nodes[0])
+    paths = np.arange(len(nodes[0].eigenvalue))
+    for first, second in zip(nodes, nodes[1:]):
+        paths = scan.follow(first, second, paths)
+    scan.crossings.sort(key=lambda crossing: crossing.position)
+    return scan
+
+
+def _first_nodes(scan: SpeedScan, speeds):
+    """Nodes at the first speeds; the basis is enriched, once, where the dropped modes matter."""
+    nodes = [scan.node(speed) for speed in speeds]
+    missing = [shape for node in nodes[::3] for shape in _missing(scan, node)]
+    if not missing:
+        return nodes
+    shapes = np.column_stack([part for shape in missing for part in (shape.real, shape.imag)])
+    limit = np.sqrt(scan.reduction.dropped_stiffness.min()) / (2 * np.pi)
+    scan.reduction = reduce_model(scan.model, limit, _main_directions(shapes, scan.model.mass))
+    return [scan.node(speed) for speed in speeds]
+
+
+def _missing(scan: SpeedScan, node):
+    """What the dropped modes add to the shapes of watched modes, where they move the eigenvalue too much."""
+    if not scan.reduction.dropped.shape[1]:
+        return []
+    watched = np.flatnonzero(excess(node.eigenvalue, max(scan.damping_ratios) + _WATCH) > 0)
+    change, missing = scan.reduction.correction(node.eigenvalue[watched], node.speed, node.right[:, watched], node.left[:, watched])
+    return [missing[:, i] for i in np.flatnonzero(np.abs(change) > _REDUCTION_ERROR * np.abs(node.eigenvalue[watched]))]
+
+
+def _main_directions(shapes, mass):
+    """Directions that hold the shapes to 1 %, in the mass metric."""
+    shapes = shapes / np.sqrt((shapes * (mass @ shapes)).sum(axis=0))
+    square, directions = np.linalg.eigh(shapes.T @ mass @ shapes)
+    return shapes @ directions[:, square > 1e-4 * square[-1]]
+
+
+def match(first: ScanNode, second: ScanNode):
+    """Pair the modes of two nodes: an assignment on |y1^H x2| |y2^H x1|, which is 1 for one and the same mode.
+
+    Returns
+    -------
+    i, j : ndarray of int
+        Paired modes of the first and the second node.
+    similarity : ndarray
+        Their measure.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    similarity = np.abs(first.state_left.conj().T @ second.state_right) * np.abs(second.state_left.conj().T @ first.state_right).T
+    step = second.position - first.position
+    ahead = first.eigenvalue + 0.5 * step * first.slope
+    back = second.eigenvalue - 0.5 * step * second.slope
+    distance = np.abs(ahead[:, None] - back) / (np.abs(first.eigenvalue)[:, None] + np.abs(second.eigenvalue))
+    i, j = linear_sum_assignment(np.minimum(distance, 1.0) - np.minimum(similarity, 1.0))
+    return i, j, similarity[i, j]
+
+
+def examine(first: ScanNode, second: ScanNode, pairs, damping_ratios, paths=None):
+    """Interpolate the watched paths of an interval.
+
+    Returns
+    -------
+    resolved : bool
+        Every watched path is smooth and, but for the crossings, clear of the criteria.
+    crossings : list of Crossing
+    """
+    i, j, similarity = pairs
+    limit = max(damping_ratios) + _WATCH
+    watched, also = excess(first.eigenvalue, limit) > 0, excess(second.eigenvalue, limit) > 0
+    keep = watched[i] | also[j]
+    unpaired = np.count_nonzero(watched) > np.count_nonzero(watched[i]) or np.count_nonzero(also) > np.count_nonzero(also[j])
+    i, j = i[keep], j[keep]
+    coefficients, kink = _cubics(first, second, i, j)
+    size = np.minimum(np.abs(first.eigenvalue[i]), np.abs(second.eigenvalue[j]))
+    credible = ((kink < _SMOOTH * size) & (similarity[keep] > _SIMILAR)) | (kink < _CLEAR * size)
+    resolved, crossings = not unpaired and bool(credible.all()), []
+    values = _at(coefficients, _GRID[:, None])
+    for damping_ratio in damping_ratios:
+        g = excess(values, damping_ratio)
+        g[np.abs(g) <= _NEUTRAL * np.abs(values)] = 0.0
+        changes = np.sign(g[1:]) * np.sign(g[:-1]) < 0
+        count, nearest = changes.sum(axis=0), np.abs(g).min(axis=0)
+        ends = np.minimum(np.abs(g[0]), np.abs(g[-1]))
+        grazing = (count == 0) & (nearest < ends) & (nearest < 0.25 * kink)
+        resolved = resolved and not grazing.any() and not (count > 1).any()
+        for k, path in zip(*np.nonzero(changes)):
+            t = _GRID[k] + (_GRID[k + 1] - _GRID[k]) * g[k, path] / (g[k, path] - g[k + 1, path])
+            crossings.append(Crossing(damping_ratio, int(np.sign(g[k + 1, path])), first.position + t * (second.position - first.position),
+                                      complex(_at(coefficients[:, path], t)), -1 if paths is None else int(paths[i[path]]),
+                                      ((first, i[path]), (second, j[path]))))
+    return resolved, crossings
+
+
+def _cubics(first, second, i, j):
+    """Coefficients in t = 0..1 of the cubics through eigenvalues and slopes, and their kinks."""
+    step = second.position - first.position
+    a, b, da, db = first.eigenvalue[i], second.eigenvalue[j], step * first.slope[i], step * second.slope[j]
+    # the kink is how far the end is from where the mean of both slopes points: of the order of the cubic term
+    return np.array([a, da, 3 * (b - a) - 2 * da - db, 2 * (a - b) + da + db]), np.abs(b - a - 0.5 * (da + db))
+
+
+def _at(c, t):
+    return c[0] + t * (c[1] + t * (c[2] + t * c[3]))

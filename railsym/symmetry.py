@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Left-right symmetry of a linear model: find it, prove it on the matrices, split the equations in two.
+
+Mirroring a motion swaps what stands left and right and turns the sign of y, yaw and roll. When the matrices commute with it,
+the motions that mirroring leaves as they are (bounce, pitch, surge) and those that it turns round (sway, yaw, roll, hunting)
+do not see each other, and two problems of half the size replace one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from railsym.linear_model import LinearModel
+
+# sign of a coordinate under y -> -y: vectors turn their y, axial vectors their x and z components
+_SIGN = {"x": 1.0, "y": -1.0, "z": 1.0, "yaw": -1.0, "roll": -1.0, "pitch": 1.0, "spin": 1.0}
+_PLACE = 1e-6               # m, two positions that differ less are one
+_DIFFERENCE = 1e-9          # of the largest entry in a row: assembling in another order moves the last digits only
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One half of a symmetric model, or the whole of an unsymmetric one.
+
+    Attributes
+    ----------
+    model : LinearModel
+        Its matrices, in coordinates that are orthonormal combinations of those of the whole.
+    parity : int
+        +1 motions equal to their mirror image, -1 motions opposite to it, 0 the whole model.
+    first, second : ndarray of int
+        The coordinates combined in each coordinate of the part (equal where a coordinate is its own image).
+    weight_first, weight_second : ndarray
+        Their factors.
+    whole : LinearModel
+        The model that was split.
+    """
+
+    model: LinearModel
+    parity: int
+    first: np.ndarray
+    second: np.ndarray
+    weight_first: np.ndarray
+    weight_second: np.ndarray
+    whole: LinearModel
+
+    def expand(self, shape: np.ndarray) -> np.ndarray:
+        """Vectors of the part (m, ...) as vectors of the whole (n, ...)."""
+        axes = (slice(None),) + (None,) * (shape.ndim - 1)
+        result = np.zeros((self.whole.size,) + shape.shape[1:], dtype=shape.dtype)
+        result[self.first] += self.weight_first[axes] * shape
+        result[self.second] += self.weight_second[axes] * shape
+        return result
+
+
+def split(model: LinearModel) -> tuple[Part, ...]:
+    """The antisymmetric and the symmetric part of a model, or one part that is the model itself.
+
+    Parameters
+    ----------
+    model : LinearModel
+        With `mirror`, or with a vehicle whose bodies and Maxwell elements stand in mirrored places.
+
+    Returns
+    -------
+    tuple of Part
+        (antisymmetric, symmetric) when all matrices commute with the mirroring to 1e-9 of each row, else (whole,).
+    """
+    mirror = find_mirror(model)
+    if mirror is None:
+        index, one = np.arange(model.size), np.ones(model.size)
+        return (Part(model, 0, index, index, one, 0 * one, model),)
+    return tuple(_part(model, mirror, parity) for parity in (-1, 1))
+
+
+def find_mirror(model: LinearModel) -> tuple[np.ndarray, np.ndarray] | None:
+    """Permutation and signs of the mirroring that all matrices commute with, or None."""
+    mirror = model.mirror if model.mirror is not None else _mirror_of_vehicle(model)
+    if mirror is None:
+        return None
+    matrices = (model.stiffness, model.mass, model.damping_constant, model.damping_speed, model.damping_inverse_speed)
+    return mirror if all(_commutes(matrix, *mirror) for matrix in matrices) else None
+
+
+def _commutes(matrix, permutation, sign) -> bool:
+    # an entry without counterpart is found from its own side, so looking at the entries that are not zero is enough
+    row, column = np.nonzero(matrix)
+    value = matrix[row, column]
+    image = matrix[permutation[row], permutation[column]] * (sign[row] * sign[column])
+    allowed = _DIFFERENCE * np.abs(matrix).max(axis=1)
+    return bool((np.abs(image - value) <= allowed[row]).all())
+
+
+def _part(model: LinearModel, mirror, parity: int) -> Part:
+    permutation, sign = mirror
+    index = np.arange(model.size)
+    keep = (index < permutation) | ((index == permutation) & (sign == parity))
+    first, second = index[keep], permutation[keep]
+    alone = first == second
+    weight_first = np.where(alone, 1.0, np.sqrt(0.5))
+    weight_second = np.where(alone, 0.0, parity * sign[first] * np.sqrt(0.5))
+
+    def folded(matrix):
+        # the matrix commutes with the mirroring: a row of the image gives nothing that the row itself does not give
+        rows = matrix[first]
+        columns = rows[:, first] * weight_first + rows[:, second] * weight_second
+        return columns / weight_first[:, None]
+
+    translation = model.uniform_translation
+    if translation is not None:
+        translation = weight_first * translation[first] + weight_second * translation[second]
+    part = LinearModel(tuple(model.coordinates[i] for i in first), folded(model.mass), folded(model.stiffness),
+                       folded(model.damping_constant), folded(model.damping_speed), folded(model.damping_inverse_speed),
+                       model.first_order[first], model.cyclic[first], model.vehicle, model.contact,
+                       translation=np.zeros(len(first)) if translation is None else translation)
+    return Part(part, parity, first, second, weight_first, weight_second, model)
+
+
+def _mirror_of_vehicle(model: LinearModel):
+    """Pair the coordinates by the places of their bodies and elements; None when something has no counterpart."""
+    if getattr(model.vehicle, "bodies", None) is None:
+        return None
+    images = _body_images(model.vehicle.bodies)
+    if images is None:
+        return None
+    place = {name: i for i, name in enumerate(model.coordinates)}
+    elements = _element_images(model.vehicle.elements, images) if model.first_order.any() else {}
+    permutation, sign = np.empty(model.size, int), np.ones(model.size)
+    for i, name in enumerate(model.coordinates):
+        image = _image_of_coordinate(name, bool(model.first_order[i]), images, elements)
+        if image not in place:
+            return None
+        permutation[i] = place[image]
+        sign[i] = 1.0 if model.first_order[i] else _SIGN[name.rpartition(".")[2]]
+    return permutation, _sign_of_elongations(model, permutation, sign)
+
+
+def _image_of_coordinate(name, internal, images, elements):
+    owner, _, last = name.rpartition(".")
+    if internal:
+        return f"{elements.get(owner)}.{last}"
+    return f"{_attachment_image(owner, images)}.{last}"
+
+
+def _attachment_image(name, images):
+    body, _, box = name.partition(".")
+    other = {"axlebox_left": "axlebox_right", "axlebox_right": "axlebox_left"}.get(box, box)
+    return images.get(body, body) + ("." + other if box else "")
+
+
+def _key(position, flip=1.0):
+    x, y, z = position
+    return round(float(x) / _PLACE), round(flip * float(y) / _PLACE), round(float(z) / _PLACE)
+
+
+def _body_images(bodies):
+    """Name of each body -> name of the body in its mirrored place, of the same mass."""
+    places = {(_key(b.position), round(b.mass, 6)): b.name for b in bodies}
+    if len(places) < len(bodies):
+        return None
+    images = {b.name: places.get((_key(b.position, -1.0), round(b.mass, 6))) for b in bodies}
+    return None if None in images.values() else images
+
+
+def _element_images(elements, images):
+    """Name of each Maxwell element -> name of the one of its group between the mirrored places of the mirrored bodies."""
+    inner = [e for e in elements if e.type == "maxwell"]
+    places = {(e.group, e.first.body, e.second.body, _key(e.first.position), _key(e.second.position)): e.name for e in inner}
+    return {e.name: places.get((e.group, _attachment_image(e.first.body, images), _attachment_image(e.second.body, images),
+                                _key(e.first.position, -1.0), _key(e.second.position, -1.0))) for e in inner}
+
+
+def _sign_of_elongations(model, permutation, sign):
+    """An elongation and its image are equal or opposite: read it from the rows of K over second-order coordinates."""
+    internal, outer = np.flatnonzero(model.first_order), np.flatnonzero(~model.first_order)
+    row = model.stiffness[np.ix_(internal, outer)]
+    image = model.stiffness[np.ix_(permutation[internal], permutation[outer])] * sign[outer]
+    sign[internal] = np.where((row * image).sum(axis=1) < 0, -1.0, 1.0)
+    return sign
