@@ -2,7 +2,7 @@
 """The only module that touches the C library; above it everything is float64 arrays."""
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -70,9 +70,10 @@ class Kernel:
     slots: np.ndarray
     has_law: bool
 
-    def slot(self, name):
-        """Slot number of an input name."""
-        return self.inputs.index(name)
+    @cached_property
+    def slot_of(self):
+        """Input name -> slot number."""
+        return {name: k for k, name in enumerate(self.inputs)}
 
 
 @cache
@@ -229,7 +230,7 @@ class Assembly:
         """Give one input of every instance of a kernel new values, shape (count,)."""
         kernel = kernels()[name]
         values = _vector(values, self._counts[name], f"{name}.{slot_name}")
-        _check(lib.rs_model_set_input(self._model, kernel.number, kernel.slot(slot_name), _doubles(values)),
+        _check(lib.rs_model_set_input(self._model, kernel.number, kernel.slot_of[slot_name], _doubles(values)),
                f"{name}.{slot_name}")
 
     def residual(self, q, u, a):

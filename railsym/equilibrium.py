@@ -95,11 +95,13 @@ def _relative_motion(model, element):
     """Rates of separation and relative rotation (3, 12) seen from the first body, and the separation."""
     index, place, marker = ends(model.topology, element)
     apart = place[1] + marker[1] - place[0] - marker[0]
-    axes = np.eye(3)[[2, 0, 1]].T  # yaw, roll, pitch rates as a vector
     lever = marker[0] + apart
-    form = np.hstack([-np.eye(3), _turning(lever) @ axes, np.eye(3), -_turning(marker[1]) @ axes])
-    turn = np.hstack([np.zeros((3, 3)), -axes, np.zeros((3, 3)), axes])
+    form = np.hstack([-np.eye(3), _turning(lever) @ _AXES, np.eye(3), -_turning(marker[1]) @ _AXES])
+    turn = np.hstack([np.zeros((3, 3)), -_AXES, np.zeros((3, 3)), _AXES])
     return index, form, turn, apart
+
+
+_AXES = np.eye(3)[[2, 0, 1]].T  # yaw, roll, pitch rates as a vector
 
 
 def _turning(arm):

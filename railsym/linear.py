@@ -3,23 +3,22 @@
 
 The kernels' pencil about the preloaded design position, wheelsets spinning at -V/r0, gives
 stiffness (with the preload's geometric part), damping and mass. On straight track
-C(V) = C0 + V C1 + C2/V holds exactly: gyroscopic moments grow with V, creepages are
-velocities over V. Three speeds give the three matrices.
+C(V) = C0 + V C1 + C2/V holds exactly: C0 is the elements', V C1 the gyroscopic moments of
+the wheelsets, C2/V the creep forces, because creepages are velocities over V. So the three
+are taken one by one, and only the wheel-rail part is computed anew for another contact.
 """
 
+from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from railsym import _core
 from railsym.contact import LinearContact
 from railsym.equilibrium import static_preload
 from railsym.errors import ModelError
 from railsym.linear_model import Linearisation, LinearModel
-from railsym.model import Model
-
-# Speeds (m/s) that the three damping matrices are separated at: a decade apart, so that
-# the 3 x 3 solution loses no more than one digit.
-_SPEEDS = np.array([4.0, 20.0, 100.0])
+from railsym.model import Model, input_table, set_wheels
 
 _rolling_vehicles = WeakKeyDictionary()
 
@@ -38,6 +37,7 @@ class RollingVehicle:
         if not self.model.wheels:
             raise ModelError(f"vehicle {vehicle.name!r} has no wheelset, so nothing rolls; add a body of kind 'wheelset'")
         self.preload = static_preload(self.model)
+        self._contact = None
         bodies, sides = zip(*self.model.wheels, strict=True)
         self._wheels = {
             "load": self.preload.wheel_loads,
@@ -50,19 +50,36 @@ class RollingVehicle:
         """WheelContacts of a resolved LinearContact at the static wheel loads."""
         return contact.wheels(**self._wheels)
 
+    @cached_property
+    def _structure(self):
+        """M, K, C0 and C1 of bodies and elements; gyroscopic moments at 1 m/s are C1."""
+        model = self.model
+        rest = model.pencil((0.0, 1.0, 0.0))
+        turning = model.pencil((0.0, 1.0, 0.0), u=model.rolling(1.0))
+        return (model.pencil((0.0, 0.0, 1.0)), model.pencil((1.0, 0.0, 0.0), u=model.rolling(1.0)),
+                rest, turning - rest)
+
+    def _wheel_rail(self, contacts):
+        """K and C2 of the wheel-rail contact: creep forces at 1 m/s are C2."""
+        if self._contact is None:
+            self._contact = _core.Assembly(self.model.topology.is_angle)
+            rows, index = self.model.wheel_rows(contacts)
+            self._contact.add("wheel_rail", input_table("wheel_rail", rows), index)
+        set_wheels(self._contact, contacts)
+        rest = np.zeros(self.model.size)
+        rolling = self.model.rolling(1.0)
+        return [self._contact.pencil(rest, rolling, rest, seed) for seed in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))]
+
     def linear_model(self, contact):
-        """Matrices for a contact; the model's state is the rest state before and after."""
-        model, vehicle = self.model, self.model.vehicle
+        """Matrices for a contact; what is not given comes from the vehicle file."""
+        vehicle, topo = self.model.vehicle, self.model.topology
         contact = contact.resolved(vehicle.contact)
-        model.add_wheels(self.contacts(contact))
-        damping = [self._pencil((0.0, 1.0, 0.0), speed) for speed in _SPEEDS]
-        constant, with_speed, with_inverse = _separate(damping)
-        stiffness = self._pencil((1.0, 0.0, 0.0), _SPEEDS[1])
-        topo = model.topology
+        mass, stiffness, constant, with_speed = self._structure
+        rail_stiffness, with_inverse = self._wheel_rail(self.contacts(contact))
         return LinearModel(
             coordinates=topo.coordinates,
-            mass=self._pencil((0.0, 0.0, 1.0), _SPEEDS[1]),
-            stiffness=stiffness,
+            mass=mass,
+            stiffness=stiffness + rail_stiffness,
             damping_constant=constant,
             damping_speed=with_speed,
             damping_inverse_speed=with_inverse,
@@ -71,28 +88,6 @@ class RollingVehicle:
             vehicle=vehicle,
             contact=contact,
         )
-
-    def _pencil(self, seed, speed):
-        self.model.set_speed(speed)
-        return self.model.pencil(seed, u=self.model.rolling(speed))
-
-
-def _separate(damping):
-    """C0, C1, C2 of C(V) = C0 + V C1 + C2/V from C at the three speeds.
-
-    Entries that do not change with speed are kept to the bit; roundoff below 1e-13 of an
-    entry is no dependence on speed.
-    """
-    inverse = np.linalg.inv(np.column_stack([np.ones(3), _SPEEDS, 1.0 / _SPEEDS]))
-    stack = np.stack(damping)
-    parts = np.tensordot(inverse, stack, axes=1)
-    change = np.ptp(stack, axis=0)
-    fixed = change <= 1e-13 * np.abs(stack).max(axis=0)
-    parts[0][fixed], parts[1][fixed], parts[2][fixed] = stack[1][fixed], 0.0, 0.0
-    scale = np.abs(stack).max(axis=0)
-    for part, weight in zip(parts, (1.0, _SPEEDS[-1], 1.0 / _SPEEDS[0]), strict=True):
-        part[np.abs(part) * weight < 1e-13 * scale] = 0.0
-    return parts
 
 
 def rolling_vehicle(vehicle):

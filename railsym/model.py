@@ -57,20 +57,9 @@ class Model:
 
     def _add(self, name, rows, index, laws=None):
         """Add the rows (dicts of input name to value) of one kernel."""
-        if not rows:
-            return
-        slot = {n: k for k, n in enumerate(_core.kernels()[name].inputs)}
-        table = np.zeros((len(rows), len(slot)))
-        for line, row in zip(table, rows, strict=True):
-            for key, value in row.items():
-                start = slot.get(key)
-                if start is not None:
-                    line[start] = value
-                else:  # a vector or matrix: its first entry names the place
-                    start = slot[key + ("00" if key + "00" in slot else "0")]
-                    line[start:start + np.size(value)] = np.ravel(value)
-        self.assembly.add(name, table, index, laws)
-        self._tables[name] = len(rows)
+        if rows:
+            self.assembly.add(name, input_table(name, rows), index, laws)
+            self._tables[name] = len(rows)
 
     def _add_bodies(self):
         rows = {name: [] for name in ("rigid_body", "wheelset", "wheelset_with_axleboxes")}
@@ -161,19 +150,21 @@ class Model:
         contacts : WheelContacts
             One entry a wheel, in the order of `wheels`.
         """
-        columns = {slot: getattr(contacts, field) for slot, field in _WHEEL_SLOTS.items()}
         if "wheel_rail" in self._tables:
-            for slot, values in columns.items():
-                self.assembly.set_input("wheel_rail", slot, values)
-            return
+            set_wheels(self.assembly, contacts)
+        else:
+            self._add("wheel_rail", *self.wheel_rows(contacts))
+
+    def wheel_rows(self, contacts):
+        """Inputs and coordinates of the wheel-rail kernel, one row a wheel."""
         rows, index = [], []
         for k, (body, side) in enumerate(self.wheels):
             start = self.topology.start[body.name]
             index.append(np.arange(start, start + 6))
-            rows.append({slot: values[k] for slot, values in columns.items()} | {
+            rows.append({slot: getattr(contacts, field)[k] for slot, field in _WHEEL_SLOTS.items()} | {
                 "side": side, "b0": body.contact_half_spacing, "r0": body.wheel_radius, "V": 1.0,
                 "offset": np.array([0.0, *body.position[1:]])})
-        self._add("wheel_rail", rows, index)
+        return rows, index
 
     def rolling(self, speed):
         """Rates of the design motion: wheelsets spin at -V/r0, all else rests; shape (n,)."""
@@ -190,6 +181,30 @@ class Model:
     def pencil(self, seed, q=None, u=None, a=None):
         """cq dr/dq + cu dr/du + ca dr/da, shape (n, n), for seed (cq, cu, ca)."""
         return self.assembly.pencil(*(self._rest if v is None else v for v in (q, u, a)), seed)
+
+
+def input_table(name, rows):
+    """Inputs of a kernel (len(rows), inputs) from dicts of name to number, vector or matrix.
+
+    A vector or matrix is named by what stands before the index of its first entry.
+    """
+    slot = _core.kernels()[name].slot_of
+    table = np.zeros((len(rows), len(slot)))
+    for line, row in zip(table, rows, strict=True):
+        for key, value in row.items():
+            start = slot.get(key)
+            if start is not None:
+                line[start] = value
+            else:
+                start = slot[key + ("00" if key + "00" in slot else "0")]
+                line[start:start + np.size(value)] = np.ravel(value)
+    return table
+
+
+def set_wheels(assembly, contacts):
+    """Give the wheel-rail kernel of an assembly new contact parameters."""
+    for slot, field in _WHEEL_SLOTS.items():
+        assembly.set_input("wheel_rail", slot, getattr(contacts, field))
 
 
 def _body_row(body):

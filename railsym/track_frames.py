@@ -94,6 +94,8 @@ def relative_pose(track, speed, first, second):
         C (3, 3): track frame 2 to track frame 1. dD (3,): rate of D seen in frame 1, m/s.
         wf (3,): angular velocity of frame 2 in frame 1, components of frame 2, rad/s.
     """
+    if not track.curvature:  # frames of one attitude, at rest against each other
+        return {"D": np.subtract(second, first), "C": np.eye(3), "dD": np.zeros(3), "wf": np.zeros(3)}
     here, there = track.attitude(first[0]), track.attitude(second[0])
     turn = here.T @ there
     offset1, offset2 = (np.array([0.0, *p[1:]]) for p in (first, second))
