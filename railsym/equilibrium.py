@@ -12,8 +12,7 @@ import numpy as np
 
 from railsym.errors import ModelError
 from railsym.force_laws import slope_at_rest
-from railsym.model import bushing_diagonals
-from railsym.topology import ends
+from railsym.model import bushing_diagonals, law_directions
 
 # A rigid motion counts as free when its stiffness is this small against the largest one:
 # far above roundoff of the assembled matrix (1e-15), far below any real spring.
@@ -75,44 +74,50 @@ def _stiffness(model, forms, stiffness):
 
 def _deformations(model):
     """Rows de/dq of every component at the design position, and their stiffnesses."""
-    rows = np.zeros((6 * len(model.bushings) + len(model.laws), model.size))
-    stiffness = np.zeros(len(rows))
-    for k, element in enumerate(model.bushings):
-        here = slice(6 * k, 6 * k + 6)
-        stiffness[here] = bushing_diagonals(element)[0]
-        index, form, turn, _ = _relative_motion(model, element)
-        _scatter(rows[here], index, np.vstack([element.axes.T @ form, element.axes.T @ turn]))
-    for k, element in enumerate(model.laws, start=6 * len(model.bushings)):
-        stiffness[k] = slope_at_rest(element)
-        if stiffness[k]:
-            index, form, _, apart = _relative_motion(model, element)
-            along = apart / np.linalg.norm(apart) if element.axis is None else element.axes[:, element.axis]
-            _scatter(rows[k:k + 1], index, (along @ form)[None])
-    return rows, stiffness
+    pair, count = model.bushing_pairs, len(model.bushings)
+    axes = np.array([e.axes for e in model.bushings]).reshape(-1, 3, 3)
+    shift, turn = _relative_motion(pair)
+    six = np.concatenate([np.swapaxes(axes, 1, 2) @ part for part in (shift, turn)], axis=1)
+    rows = [_scattered(six, pair.index, model.size).reshape(6 * count, model.size)]
+    stiffness = [bushing_diagonals(model.bushings)[0].ravel()]
+
+    pair = model.law_pairs
+    along = law_directions(model.laws, pair.apart)
+    scalar = along[:, None, :] @ _relative_motion(pair)[0]
+    rows.append(_scattered(scalar, pair.index, model.size)[:, 0])
+    stiffness.append([slope_at_rest(e) for e in model.laws])
+    return np.vstack(rows), np.concatenate(stiffness)
 
 
-def _relative_motion(model, element):
-    """Rates of separation and relative rotation (3, 12) seen from the first body, and the separation."""
-    index, place, marker = ends(model.topology, element)
-    apart = place[1] + marker[1] - place[0] - marker[0]
-    lever = marker[0] + apart
-    form = np.hstack([-np.eye(3), _turning(lever) @ _AXES, np.eye(3), -_turning(marker[1]) @ _AXES])
-    turn = np.hstack([np.zeros((3, 3)), -_AXES, np.zeros((3, 3)), _AXES])
-    return index, form, turn, apart
+def _relative_motion(pair):
+    """Rates of separation and relative rotation seen from the first body, each (count, 3, 12)."""
+    count = len(pair.index)
+    shift, turn = np.zeros((2, count, 3, 12))
+    lever = pair.marker1 + pair.apart
+    shift[:, :, 0:3], shift[:, :, 6:9] = -np.eye(3), np.eye(3)
+    shift[:, :, 3:6], shift[:, :, 9:12] = _turning(lever) @ _AXES, -_turning(pair.marker2) @ _AXES
+    turn[:, :, 3:6], turn[:, :, 9:12] = -_AXES, _AXES
+    return shift, turn
 
 
 _AXES = np.eye(3)[[2, 0, 1]].T  # yaw, roll, pitch rates as a vector
 
 
 def _turning(arm):
-    """Matrix of ``arm x``."""
-    x, y, z = arm
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    """Matrices of ``arm x``, (count, 3, 3)."""
+    matrix = np.zeros((len(arm), 3, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        matrix[:, j, i], matrix[:, i, j] = arm[:, k], -arm[:, k]
+    return matrix
 
 
-def _scatter(rows, index, values):
-    present = index >= 0
-    np.add.at(rows, (slice(None), index[present]), values[:, present])
+def _scattered(values, index, size):
+    """Values (count, rows, 12) placed in the model's columns, (count, rows, size)."""
+    wide = np.zeros((*values.shape[:2], size + 1))  # the last column takes what does not exist
+    count, rows = values.shape[:2]
+    where = np.broadcast_to(index[:, None, :], values.shape)
+    np.add.at(wide, (np.arange(count)[:, None, None], np.arange(rows)[None, :, None], where), values)
+    return wide[:, :, :size]
 
 
 def _displacement(model, stiffness, load):

@@ -63,8 +63,8 @@ class RollingVehicle:
         """K and C2 of the wheel-rail contact: creep forces at 1 m/s are C2."""
         if self._contact is None:
             self._contact = _core.Assembly(self.model.topology.is_angle)
-            rows, index = self.model.wheel_rows(contacts)
-            self._contact.add("wheel_rail", input_table("wheel_rail", rows), index)
+            columns, index = self.model.wheel_rows(contacts)
+            self._contact.add("wheel_rail", input_table("wheel_rail", columns, len(index)), index)
         set_wheels(self._contact, contacts)
         rest = np.zeros(self.model.size)
         rolling = self.model.rolling(1.0)

@@ -8,12 +8,12 @@ the coordinates it touches, and (line and axis elements) its force law.
 import numpy as np
 
 from railsym import _core
-from railsym.errors import ModelError
 from railsym.force_laws import law_record
-from railsym.topology import ends, topology
-from railsym.track_frames import UniformTrack, body_motion, relative_pose
+from railsym.topology import pairs, topology
+from railsym.track_frames import UniformTrack, body_motion, relative_poses
 
 _TENSOR = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
+_BODY_KERNELS = ("rigid_body", "wheelset", "wheelset_with_axleboxes")
 _SIDES = {-1: "left", 1: "right"}
 _WHEEL_SLOTS = {"lam": "conicity", "slope": "slope", "grad": "slope_gradient", "N0": "load",
                 "kH": "normal_stiffness", "f11": "f11", "f22": "f22", "f23": "f23", "f33": "f33"}
@@ -55,22 +55,22 @@ class Model:
         """Number of coordinates."""
         return len(self.topology.coordinates)
 
-    def _add(self, name, rows, index, laws=None):
-        """Add the rows (dicts of input name to value) of one kernel."""
-        if rows:
-            self.assembly.add(name, input_table(name, rows), index, laws)
-            self._tables[name] = len(rows)
+    def _add(self, name, columns, index, laws=None):
+        """Add the instances of one kernel from columns of inputs."""
+        if len(index):
+            self.assembly.add(name, input_table(name, columns, len(index)), index, laws)
+            self._tables[name] = len(index)
 
     def _add_bodies(self):
-        rows = {name: [] for name in ("rigid_body", "wheelset", "wheelset_with_axleboxes")}
-        index = {name: [] for name in rows}
+        groups = {name: [] for name in _BODY_KERNELS}
         for body in self.vehicle.bodies:
-            name = body.kind + ("_with_axleboxes" if body.axleboxes else "")
-            start = self.topology.start[body.name]
-            rows[name].append(_body_row(body))
-            index[name].append(np.arange(start, start + _core.kernels()[name].coordinates))
-        for name, found in rows.items():
-            self._add(name, found, index[name])
+            groups[body.kind + ("_with_axleboxes" if body.axleboxes else "")].append(body)
+        for name, bodies in groups.items():
+            if bodies:
+                start = np.array([[self.topology.start[b.name]] for b in bodies])
+                rows = [_body_row(b) for b in bodies]
+                columns = {key: np.array([row[key] for row in rows]) for key in rows[0]}
+                self._add(name, columns, start + np.arange(_core.kernels()[name].coordinates))
 
     def _add_elements(self):
         split = {"bushing": [], "line": [], "axis": []}
@@ -78,31 +78,47 @@ class Model:
             six = element.type in ("bushing", "anti_roll_bar")
             split["bushing" if six else "line" if element.axis is None else "axis"].append(element)
         self.bushings, self.laws = split["bushing"], [*split["line"], *split["axis"]]
+        self._pairs = {name: pairs(self.topology, elements) for name, elements in split.items()}
         self._law_tables = {}
         for name, elements in split.items():
-            parts = [self._element_row(name, e) for e in elements]
-            laws = _core.Laws([law_record(e) for e in elements]) if elements and name != "bushing" else None
-            self._law_tables[name] = laws
-            self._add(name, [row for row, _ in parts], [i for _, i in parts], laws)
+            self._law_tables[name] = None
+            if elements and name != "bushing":
+                self._law_tables[name] = _core.Laws([law_record(e) for e in elements])
+            if elements:
+                self._add(name, *self._element_columns(name, elements), self._law_tables[name])
 
-    def _element_row(self, kernel, element):
-        """Inputs and coordinates of one element."""
-        index, place, marker = ends(self.topology, element)
-        pose = relative_pose(self.track, 0.0, *place)
-        row = {"m1_": marker[0], "m2_": marker[1], **pose}
-        apart = pose["D"] + pose["C"] @ marker[1] - marker[0]
-        if kernel == "bushing":
-            return row | _bushing_row(element, apart), index
-        index = [*index, self.topology.internal.get(element.name, -1)]
-        if kernel == "axis":
-            axis = element.axes[:, element.axis]
-            return row | {"ax": axis, "e0": axis @ apart}, index
-        return row | {"e0": np.linalg.norm(apart)}, index
+    def _element_columns(self, name, elements):
+        """Inputs and coordinates of the elements of one kernel."""
+        pair = self._pairs[name]
+        pose = relative_poses(self.track, 0.0, pair)
+        apart = pose["D"] + np.einsum("nij,nj->ni", pose["C"], pair.marker2) - pair.marker1
+        columns = {"m1_": pair.marker1, "m2_": pair.marker2, **pose}
+        if name == "bushing":
+            axes, (stiffness, damping) = np.array([e.axes for e in elements]), bushing_diagonals(elements)
+            free = np.einsum("nji,nj->ni", axes, apart)
+            own = {"k": stiffness, "c": damping, "A1_": axes, "A2_": axes, "e0_": np.hstack([free, 0.0 * free])}
+            return columns | own, pair.index
+        internal = [[self.topology.internal.get(e.name, -1)] for e in elements]
+        index = np.hstack([pair.index, internal])
+        if name == "line":
+            return columns | {"e0": np.linalg.norm(apart, axis=1)}, index
+        axis = law_directions(elements, apart)
+        return columns | {"ax": axis, "e0": np.sum(axis * apart, axis=1)}, index
+
+    @property
+    def bushing_pairs(self):
+        """Attachments of `bushings`."""
+        return self._pairs["bushing"]
+
+    @property
+    def law_pairs(self):
+        """Attachments of `laws`."""
+        return pairs(self.topology, self.laws)
 
     def set_speed(self, speed, speed_rate=0.0):
         """Move all track frames at ``speed`` (m/s)."""
         motion = body_motion(self.track, speed, speed_rate, self.vehicle.gravity)
-        for name in ("rigid_body", "wheelset", "wheelset_with_axleboxes"):
+        for name in _BODY_KERNELS:
             for key, value in motion.items():
                 self._fill(name, key, value)
         for key in ("V", "w0", "w1", "w2"):
@@ -116,14 +132,11 @@ class Model:
 
     def _move_pairs(self, speed):
         """Rates of the track frames against each other, which differ in a curve."""
-        groups = {"bushing": self.bushings}
-        groups["line"] = [e for e in self.laws if e.axis is None]
-        groups["axis"] = [e for e in self.laws if e.axis is not None]
-        for name, elements in groups.items():
-            poses = [relative_pose(self.track, speed, *ends(self.topology, e)[1]) for e in elements]
+        for name in self._law_tables.keys() & self._tables.keys():
+            pose = relative_poses(self.track, speed, self._pairs[name])
             for key in ("dD", "wf"):
-                for k in range(3 if poses else 0):
-                    self.assembly.set_input(name, f"{key}{k}", [p[key][k] for p in poses])
+                for k in range(3):
+                    self.assembly.set_input(name, f"{key}{k}", pose[key][:, k])
 
     def set_preload(self, bushing_forces, law_forces):
         """Static forces at the design position.
@@ -157,14 +170,17 @@ class Model:
 
     def wheel_rows(self, contacts):
         """Inputs and coordinates of the wheel-rail kernel, one row a wheel."""
-        rows, index = [], []
-        for k, (body, side) in enumerate(self.wheels):
-            start = self.topology.start[body.name]
-            index.append(np.arange(start, start + 6))
-            rows.append({slot: getattr(contacts, field)[k] for slot, field in _WHEEL_SLOTS.items()} | {
-                "side": side, "b0": body.contact_half_spacing, "r0": body.wheel_radius, "V": 1.0,
-                "offset": np.array([0.0, *body.position[1:]])})
-        return rows, index
+        bodies = [body for body, _ in self.wheels]
+        start = np.array([[self.topology.start[body.name]] for body in bodies])
+        columns = {slot: getattr(contacts, field) for slot, field in _WHEEL_SLOTS.items()}
+        columns |= {
+            "side": np.array([side for _, side in self.wheels]),
+            "b0": np.array([body.contact_half_spacing for body in bodies]),
+            "r0": np.array([body.wheel_radius for body in bodies]),
+            "offset": np.array([[0.0, *body.position[1:]] for body in bodies]),
+            "V": np.ones(len(bodies)),
+        }
+        return columns, start + np.arange(6)
 
     def rolling(self, speed):
         """Rates of the design motion: wheelsets spin at -V/r0, all else rests; shape (n,)."""
@@ -183,21 +199,17 @@ class Model:
         return self.assembly.pencil(*(self._rest if v is None else v for v in (q, u, a)), seed)
 
 
-def input_table(name, rows):
-    """Inputs of a kernel (len(rows), inputs) from dicts of name to number, vector or matrix.
+def input_table(name, columns, count):
+    """Inputs of a kernel (count, inputs) from columns (count,), (count, k) or (count, 3, 3).
 
     A vector or matrix is named by what stands before the index of its first entry.
     """
     slot = _core.kernels()[name].slot_of
-    table = np.zeros((len(rows), len(slot)))
-    for line, row in zip(table, rows, strict=True):
-        for key, value in row.items():
-            start = slot.get(key)
-            if start is not None:
-                line[start] = value
-            else:
-                start = slot[key + ("00" if key + "00" in slot else "0")]
-                line[start:start + np.size(value)] = np.ravel(value)
+    table = np.zeros((count, len(slot)))
+    for key, values in columns.items():
+        first = next(slot[key + tail] for tail in ("", "0", "00") if key + tail in slot)
+        flat = np.reshape(values, (count, -1))
+        table[:, first:first + flat.shape[1]] = flat
     return table
 
 
@@ -220,19 +232,26 @@ def _body_row(body):
     return row
 
 
-def _bushing_row(element, apart):
-    stiffness, damping = bushing_diagonals(element)
-    return {"k": stiffness, "c": damping, "A1_": element.axes, "A2_": element.axes,
-            "e0_": np.concatenate([element.axes.T @ apart, np.zeros(3)])}
+def law_directions(elements, apart):
+    """Unit vectors (count, 3) that line and axis elements act along at the design position."""
+    along = np.array([np.zeros(3) if e.axis is None else e.axes[:, e.axis] for e in elements]).reshape(-1, 3)
+    line = np.array([e.axis is None for e in elements], dtype=bool)
+    along[line] = apart[line] / np.linalg.norm(apart[line], axis=1, keepdims=True)
+    return along
 
 
-def bushing_diagonals(element):
-    """Six stiffnesses and six dampings of a bushing or an anti-roll bar."""
-    p, zero = element.parameters, np.zeros(3)
-    if element.type == "anti_roll_bar":
-        column = np.eye(6)[3 + (element.axis or 0)]
-        return p["stiffness"] * column, p.get("damping", 0.0) * column
-    if element.type != "bushing":
-        raise ModelError(f"{element.name}: {element.type} is no element of six components")
-    pairs = (("stiffness", "rotational_stiffness"), ("damping", "rotational_damping"))
-    return tuple(np.concatenate([p.get(a, zero), p.get(b, zero)]) for a, b in pairs)
+def bushing_diagonals(elements):
+    """Stiffnesses and dampings (count, 6) of bushings and anti-roll bars."""
+    stiffness, damping = np.zeros((2, len(elements), 6))
+    for k, element in enumerate(elements):
+        p = element.parameters
+        if element.type == "anti_roll_bar":
+            roll = 3 + (element.axis or 0)
+            stiffness[k, roll], damping[k, roll] = p["stiffness"], p.get("damping", 0.0)
+            continue
+        for target, names in ((stiffness, ("stiffness", "rotational_stiffness")),
+                              (damping, ("damping", "rotational_damping"))):
+            for start, name in zip((0, 3), names, strict=True):
+                if name in p:
+                    target[k, start:start + 3] = p[name]
+    return stiffness, damping

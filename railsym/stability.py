@@ -232,7 +232,7 @@ class _Search:
         recovers = next((c.position for c in own if c.damping_ratio == self.damping_ratio and c.direction < 0), np.inf)
         grows = next((c.position for c in own if c.damping_ratio == 0.0 and c.direction > 0), np.inf)
         low = scan.nodes[0].speed
-        if is_below(self._start_eigenvalue(scan, path), 0.0) or (self.damping_ratio > 0.0 and grows < recovers):
+        if self._grows_at_start(scan, path) or (self.damping_ratio > 0.0 and grows < recovers):
             self.notes.append(f"{name}: already {self._state()} at the lowest speed, {low:.4g} m/s")
             return True
         if self.damping_ratio > 0.0:
@@ -241,11 +241,14 @@ class _Search:
         return False
 
     @staticmethod
-    def _start_eigenvalue(scan, path):
+    def _grows_at_start(scan, path) -> bool:
+        """Is the mode unstable at the lowest speed, on the full matrices?"""
+        if not is_below(scan.nodes[0].eigenvalue[path], 0.0):
+            return False
         try:
-            return scan.polish_start(path).eigenvalue
+            return bool(is_below(scan.polish_start(path).eigenvalue, 0.0))
         except ConvergenceError:
-            return scan.nodes[0].eigenvalue[path]
+            return True
 
     def _state(self):
         return f"below {100 * self.damping_ratio:g} % damping" if self.damping_ratio else "unstable"

@@ -69,14 +69,45 @@ def topology(vehicle):
     )
 
 
-def ends(topo, element):
-    """Indices, design positions and markers of both ends of an element.
+@dataclass(frozen=True)
+class Pairs:
+    """Where a list of elements is attached; one row an element.
+
+    Attributes
+    ----------
+    index : ndarray of int, shape (count, 12)
+        Coordinates of the first and the second end, -1 for one that does not exist.
+    place1, place2 : ndarray, shape (count, 3)
+        Design positions of the two bodies, m.
+    marker1, marker2 : ndarray, shape (count, 3)
+        Attachment points from those, m.
+    """
+
+    index: np.ndarray
+    place1: np.ndarray
+    place2: np.ndarray
+    marker1: np.ndarray
+    marker2: np.ndarray
+
+    @property
+    def apart(self):
+        """Second attachment point from the first at the design position, shape (count, 3), m."""
+        return self.place2 + self.marker2 - self.place1 - self.marker1
+
+
+def pairs(topo, elements):
+    """Attachments of a list of elements.
 
     The track as an end has the design position, and so the frame, of the other end's body.
     """
-    found = [topo.attachment[end.body] for end in (element.first, element.second)]
-    index = [part[0] for part in found]
-    place = [part[1] for part in found]
-    place = [place[k] if place[k] is not None else place[1 - k] for k in range(2)]
-    marker = [end.position - p for end, p in zip((element.first, element.second), place, strict=True)]
-    return np.concatenate(index), place, marker
+    index = np.empty((len(elements), 12), dtype=int)
+    numbers = np.empty((4, len(elements), 3))
+    for k, element in enumerate(elements):
+        index1, place1 = topo.attachment[element.first.body]
+        index2, place2 = topo.attachment[element.second.body]
+        index[k, :6], index[k, 6:] = index1, index2
+        numbers[0, k] = place2 if place1 is None else place1
+        numbers[1, k] = place1 if place2 is None else place2
+        numbers[2, k], numbers[3, k] = element.first.position, element.second.position
+    place1, place2, point1, point2 = numbers
+    return Pairs(index, place1, place2, point1 - place1, point2 - place2)

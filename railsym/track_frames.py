@@ -94,8 +94,6 @@ def relative_pose(track, speed, first, second):
         C (3, 3): track frame 2 to track frame 1. dD (3,): rate of D seen in frame 1, m/s.
         wf (3,): angular velocity of frame 2 in frame 1, components of frame 2, rad/s.
     """
-    if not track.curvature:  # frames of one attitude, at rest against each other
-        return {"D": np.subtract(second, first), "C": np.eye(3), "dD": np.zeros(3), "wf": np.zeros(3)}
     here, there = track.attitude(first[0]), track.attitude(second[0])
     turn = here.T @ there
     offset1, offset2 = (np.array([0.0, *p[1:]]) for p in (first, second))
@@ -109,3 +107,13 @@ def relative_pose(track, speed, first, second):
         "dD": moving - np.cross(omega, from_origin),
         "wf": omega - turn.T @ omega,
     }
+
+
+def relative_poses(track, speed, pairs):
+    """`relative_pose` of many elements (a `railsym.topology.Pairs`): arrays with one row an element."""
+    count = len(pairs.place1)
+    if not track.curvature:  # frames of one attitude, at rest against each other
+        rest = np.zeros((count, 3))
+        return {"D": pairs.place2 - pairs.place1, "C": np.broadcast_to(np.eye(3), (count, 3, 3)), "dD": rest, "wf": rest}
+    found = [relative_pose(track, speed, *places) for places in zip(pairs.place1, pairs.place2, strict=True)]
+    return {key: np.array([pose[key] for pose in found]) for key in found[0]}
