@@ -180,9 +180,8 @@ def mirror_matrix(vehicle, model):
     return matrix
 
 
-@pytest.mark.parametrize("terms", [ContactTerms(), ContactTerms(load_point="wheelset", tilt="exact",
-                                                                spin_preload="track"),
-                                   ContactTerms(load_point="edge", spin_preload="wheelset")])
+@pytest.mark.parametrize("terms", [ContactTerms(), ContactTerms("wheelset", "exact", "track"),
+                                   ContactTerms("potential", "none", "none")])
 def test_mirror_symmetry(case, terms):
     model = independent_model(case, stand_ins.usual_wheels(case), 60.0, terms=terms)
     mirror = mirror_matrix(case, model)
@@ -191,8 +190,11 @@ def test_mirror_symmetry(case, terms):
 
 
 def test_stationary_rolling_needs_no_force(case):
-    """Rolling a little faster: x' = v, spin' = -v/r0, is a rigid motion without creepage."""
-    model = independent_model(case, stand_ins.usual_wheels(case), 30.0)
+    """Rolling a little faster: x' = v, spin' = -v/r0, is a rigid motion without creepage.
+
+    With the tilted normal a torque f33 delta0^2/r0 a wheel is left, since spin creepage is divided by the constant V.
+    """
+    model = independent_model(case, stand_ins.usual_wheels(case), 30.0, terms=ContactTerms(tilt="none"))
     rates = translation_vector(model, "x")
     rates[model.cyclic] = -1.0 / 0.46
     moved = [i for i, name in enumerate(model.names) if name != "body.x"]
