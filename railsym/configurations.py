@@ -80,7 +80,9 @@ def _make_viscous(key, name, groups, values):
     if group is None:
         raise Problem(key, name, unknown(name, maxwell, "groups of Maxwell elements"))
     if group.type != "maxwell":
-        raise Problem(key, name, f"holds elements of type {group.type!r}; allowed are groups of type 'maxwell': {', '.join(maxwell)}")
+        raise Problem(
+            key, name, f"holds elements of type {group.type!r}; allowed are groups of type 'maxwell': {', '.join(maxwell)}"
+        )
     curves = {"curve": group.curves["damping_curve"]} if "damping_curve" in group.curves else {}
     groups[name] = replace(group, type="damper", curves=curves)
     values.pop(f"{name}.series_stiffness", None)

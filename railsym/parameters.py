@@ -36,6 +36,9 @@ class Parameters(Mapping):
         quantity = self._values[base]
         return Quantity(float(quantity.value[index]), quantity.unit, quantity.origin)
 
+    def __contains__(self, name):
+        return name in self._values or split_component(name, self._values)[0] is not None
+
     def __iter__(self):
         return iter(self._values)
 
@@ -166,7 +169,10 @@ def _select_curve(layout, values, name, curve):
     choices = {} if group is None else {c.key: c for c in ELEMENT_TYPES[group.type].curves}
     if key not in choices:
         names = [f"{g.name}.{c.key}" for g in layout.elements.values() for c in ELEMENT_TYPES[g.type].curves]
-        raise Problem(name, curve, "a text selects a curve, and this parameter takes none: " + unknown(name, names, "parameters that take a curve"))
+        raise Problem(
+            name, curve,
+            "a text selects a curve, and this parameter takes none: " + unknown(name, names, "parameters that take a curve"),
+        )
     if curve not in layout.curves:
         raise Problem(name, curve, "curve is " + unknown(curve, layout.curves, "curves of the file"))
     for number in choices[key].numbers:
@@ -179,4 +185,6 @@ def _check_complete(group, values):
     replaced = {n for c in ELEMENT_TYPES[group.type].curves if c.key in group.curves for n in c.numbers}
     for number in element_fields(group.type, group.mode):
         if number not in replaced and f"{group.name}.{number}" not in values:
-            raise Problem(f"{group.name}.{number}", None, f"is missing: without the curve, elements of type {group.type!r} need it too")
+            raise Problem(
+                f"{group.name}.{number}", None, f"is missing: without the curve, elements of type {group.type!r} need it too"
+            )

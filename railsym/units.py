@@ -110,7 +110,9 @@ def _read_factor(part, text):
     if match[1] not in SYMBOLS:
         near = difflib.get_close_matches(match[1], SYMBOLS, n=1, cutoff=0.5)
         hint = f" (nearest: {near[0]!r})" if near else ""
-        raise UnitError(f"unit {text!r} holds {match[1]!r}, which is not one of {', '.join(s for s in SYMBOLS if s != '1')}{hint}")
+        raise UnitError(
+            f"unit {text!r} holds {match[1]!r}, which is not one of {', '.join(s for s in SYMBOLS if s != '1')}{hint}"
+        )
     return SYMBOLS[match[1]], int(match[2] or 1)
 
 

@@ -94,7 +94,9 @@ class Vehicle:
         for thing in things:
             if thing.name == name:
                 return thing
-        raise vehicle_error(self._shown_name(), f"{singular} {name!r}", None, "is " + unknown(name, (t.name for t in things), plural))
+        raise vehicle_error(
+            self._shown_name(), f"{singular} {name!r}", None, "is " + unknown(name, (t.name for t in things), plural)
+        )
 
     def _shown_name(self):
         return f"vehicle {self.name!r}" + (f" in configuration {self.configuration!r}" if self.configuration else "")
@@ -118,7 +120,10 @@ class Vehicle:
             If there is no such configuration, or one is applied already.
         """
         if name not in self.configurations:
-            raise vehicle_error(self._shown_name(), f"configuration {name!r}", None, "is " + unknown(name, self.configurations, "configurations"))
+            raise vehicle_error(
+                self._shown_name(), f"configuration {name!r}", None,
+                "is " + unknown(name, self.configurations, "configurations"),
+            )
         if self.configuration is not None:
             raise vehicle_error(
                 self._shown_name(), f"configuration {name!r}", None,

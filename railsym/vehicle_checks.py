@@ -147,7 +147,8 @@ def inertia_tensor(key, value):
         raise Problem(key, value, f"no body has this inertia: its principal values ({shown} kg*m^2) must all be above 0")
     if principal[2] > (principal[0] + principal[1]) * (1.0 + _PLATE_TOLERANCE):
         raise Problem(
-            key, value, f"no body has this inertia: of its principal values ({shown} kg*m^2) the largest may not exceed the sum of the others"
+            key, value,
+            f"no body has this inertia: of its principal values ({shown} kg*m^2) the largest may not exceed the sum of the others",
         )
     tensor.setflags(write=False)
     return tensor

@@ -78,7 +78,10 @@ class _Reader:
         prefix = f"{key}." if key else ""
         for name, value in table.items():
             if name not in allowed:
-                raise Problem(prefix + name, None if isinstance(value, dict) else value, "key is " + unknown(name, allowed, "allowed keys"))
+                raise Problem(
+                    prefix + name, None if isinstance(value, dict) else value,
+                    "key is " + unknown(name, allowed, "allowed keys"),
+                )
         for name in required:
             if name not in table:
                 raise Problem(prefix + name, None, f"is missing (needed keys: {', '.join(required)})")
@@ -117,7 +120,10 @@ class _Reader:
     def split(self, key, entry, origin, example):
         """Value, unit and citation of an entry."""
         if not isinstance(entry, list) or len(entry) not in (2, 3) or not all(isinstance(t, str) for t in entry[1:]):
-            raise Problem(key, entry, f'a number is written [value, "unit"] or [value, "unit", "origin-key"], here with a unit such as "{example}"')
+            raise Problem(
+                key, entry,
+                f'a number is written [value, "unit"] or [value, "unit", "origin-key"], here with a unit such as "{example}"',
+            )
         if len(entry) == 3:
             origin = self.origin(key, entry[2])
         if origin is None:
@@ -180,7 +186,10 @@ class _Reader:
             raise Problem(key, entry, f"there is already a body {instance!r}; allowed is any other name")
         position = self.quantity(key, entry, schema.POSITION, origin)
         if position.value[2] > 0.0:
-            raise Problem(key, entry, "the body lies below the track plane: z points down, so the z of a height above the rails is negative")
+            raise Problem(
+                key, entry,
+                "the body lies below the track plane: z points down, so the z of a height above the rails is negative",
+            )
         self.values[f"{instance}.position"] = position
 
     def read_curve(self, key, name, table):
@@ -200,7 +209,10 @@ class _Reader:
         except UnitError as error:
             raise Problem(key, entry, str(error)) from None
         if not fitting:
-            raise Problem(key, entry, f"unit {unit!r} has the wrong dimension: allowed are {' or '.join(allowed)} and others of the same dimension")
+            raise Problem(
+                key, entry,
+                f"unit {unit!r} has the wrong dimension: allowed are {' or '.join(allowed)} and others of the same dimension",
+            )
         return fitting[0]
 
     def read_element_group(self, key, name, table):
@@ -233,10 +245,15 @@ class _Reader:
             if choice.key in curves:
                 for number in choice.numbers:
                     if number in table:
-                        raise Problem(f"{key}.{number}", table[number], f"stands beside {choice.key!r}, which replaces it: give one of the two")
+                        raise Problem(
+                            f"{key}.{number}", table[number],
+                            f"stands beside {choice.key!r}, which replaces it: give one of the two",
+                        )
                     del fields[number]
             elif not any(number in table for number in choice.numbers):
-                raise Problem(f"{key}.{choice.numbers[0]}", None, f"is missing: give {' and '.join(choice.numbers)}, or {choice.key}")
+                raise Problem(
+                    f"{key}.{choice.numbers[0]}", None, f"is missing: give {' and '.join(choice.numbers)}, or {choice.key}"
+                )
         return fields
 
     def read_instances(self, key, group, entries, origin):
@@ -247,20 +264,30 @@ class _Reader:
             where = f"{key}.at[{number}]"
             instance = self.read_instance(where, group, entry, origin)
             if instance.name in (other.name for other in instances):
-                raise Problem(f"{where}.name", instance.name, f"there is already an element of this name in {key}; allowed is any other")
+                raise Problem(
+                    f"{where}.name", instance.name, f"there is already an element of this name in {key}; allowed is any other"
+                )
             instances.append(instance)
         return tuple(instances)
 
     def read_instance(self, where, group, entry, origin):
-        self.table(where, entry, ("name", "first", "second", "position", "first_position", "second_position", "origin"), ("name", "first", "second"))
+        self.table(
+            where, entry,
+            ("name", "first", "second", "position", "first_position", "second_position", "origin"),
+            ("name", "first", "second"),
+        )
         name = self.text(f"{where}.name", entry["name"])
         _check_name(f"{where}.name", name)
         first, second = (self.text(f"{where}.{end}", entry[end], self.attachments) for end in ("first", "second"))
         if first == second:
-            raise Problem(f"{where}.second", second, "the element joins a body to itself; allowed is any attachment other than its first")
+            raise Problem(
+                f"{where}.second", second, "the element joins a body to itself; allowed is any attachment other than its first"
+            )
         one_point = "position" in entry
         if one_point == ("first_position" in entry) or one_point == ("second_position" in entry):
-            raise Problem(f"{where}.position", entry.get("position"), "give either position, or both first_position and second_position")
+            raise Problem(
+                f"{where}.position", entry.get("position"), "give either position, or both first_position and second_position"
+            )
         origin = self.table_origin(where, entry, origin)
         for end in ("position",) if one_point else ("first_position", "second_position"):
             self.values[f"{group}.{name}.{end}"] = self.quantity(f"{where}.{end}", entry[end], schema.POSITION, origin)
@@ -305,7 +332,9 @@ def _check_namespace(bodies, elements):
             owner[name] = f"the body bodies.{group.name}.at.{name}"
     for group in bodies.values():
         if group.name in owner and group.instances != (group.name,):
-            raise Problem(f"bodies.{group.name}", None, f"the name is already that of {owner[group.name]}; allowed is any other")
+            raise Problem(
+                f"bodies.{group.name}", None, f"the name is already that of {owner[group.name]}; allowed is any other"
+            )
         owner[group.name] = f"bodies.{group.name}"
     for name in elements:
         if name in owner:

@@ -7,7 +7,7 @@ import numpy as np
 
 from railsym import vehicle_schema as schema
 from railsym.vehicle_checks import Problem, check_axisymmetric, inertia_tensor
-from railsym.vehicle_parts import Axlebox, Body, Curve, Element, End, FrozenDict
+from railsym.vehicle_parts import TRACK, Axlebox, Body, Curve, Element, End, FrozenDict
 
 # Points closer than this have no line of action (m).
 SHORTEST_LINE = 1e-3
@@ -78,7 +78,7 @@ def attachment_names(body_groups):
             names.append(instance)
             if group.has_axleboxes:
                 names += [f"{instance}.axlebox_left", f"{instance}.axlebox_right"]
-    return (*names, "track")
+    return (*names, TRACK)
 
 
 def rotation(angles):
@@ -201,7 +201,9 @@ def build_curve(name, values):
     """
     x, y = values[f"curves.{name}.x"], values[f"curves.{name}.y"]
     if x.value.size != y.value.size:
-        raise Problem(f"curves.{name}.y", y.value, f"holds {y.value.size} numbers but x holds {x.value.size}; allowed: as many as x")
+        raise Problem(
+            f"curves.{name}.y", y.value, f"holds {y.value.size} numbers but x holds {x.value.size}; allowed: as many as x"
+        )
     if np.any(np.diff(x.value) <= 0.0):
         raise Problem(f"curves.{name}.x", x.value, "must be strictly increasing")
     steps = np.diff(y.value)
@@ -276,7 +278,8 @@ def _fitting_curve(key, curve, choice):
     """The curve, if it relates the right kinds of quantity and keeps the sign that its element needs."""
     if (curve.x_unit, curve.y_unit) != (choice.x_unit, choice.y_unit):
         raise Problem(
-            key, curve.name, f"the curve gives {curve.y_unit} over {curve.x_unit}; allowed is {choice.y_unit} over {choice.x_unit}"
+            key, curve.name,
+            f"the curve gives {curve.y_unit} over {curve.x_unit}; allowed is {choice.y_unit} over {choice.x_unit}",
         )
     if not choice.rising:
         if np.any(curve.y <= 0.0):
@@ -286,6 +289,7 @@ def _fitting_curve(key, curve, choice):
         raise Problem(key, curve.name, "the curve falls; a force that falls with deflection or speed is not allowed")
     if curve.x[0] > 0.0 or curve.x[-1] <= 0.0 or (curve.x[0] == 0.0 and curve.y[0] != 0.0):
         raise Problem(
-            key, curve.name, "a force curve must either start at (0, 0), and holds mirrored for negative values, or reach to both sides of 0"
+            key, curve.name,
+            "a force curve must either start at (0, 0), and holds mirrored for negative values, or reach to both sides of 0",
         )
     return curve

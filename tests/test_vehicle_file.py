@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Strict reading: every kind of bad input is one error that names file, key, value, what is allowed, and the nearest match."""
 
+import re
+from pathlib import Path
+
 import pytest
 
 from railsym.errors import VehicleFileError
@@ -243,3 +246,14 @@ def test_origins_are_the_nearest_given(tmp_path):
     assert parameters["frame.mass"].origin == parameters["primary.left.position"].origin == "a book"
     assert parameters["axle.axlebox.mass"].origin == "a book"
     assert parameters["primary.damping"].origin == "default of the file format"
+
+
+def test_the_examples_of_the_docs_load(tmp_path):
+    text = (Path(__file__).parents[1] / "docs" / "vehicle_file.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```toml\n(.*?)```", text, flags=re.DOTALL)
+    car = '[bodies.car]\nkind = "rigid_body"\nmass = [39, "t"]\ninertia = [[65, 1870, 1850], "t*m^2"]\norigin = "report"\nat = { car = [[0, 0, -1.475], "m"] }\n'
+    vehicle = load_vehicle(write(tmp_path, "\n".join([*blocks, car])))
+    assert [b.name for b in vehicle.bodies] == ["bogie1", "bogie2", "wheelset1", "car"]
+    bench = vehicle.replace({"anti_yaw_damper.damping_curve": "bench", "anti_yaw_damper.series_stiffness": 2e6, "car.inertia.0": 6e4})
+    assert bench.element("anti_yaw_damper.front_left").parameters["damping_curve"].y[-1] == 9000.0
+    assert vehicle.configured("one_damper_absent").elements == ()
