@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from railsym.units import UnitError, to_si
-from railsym.vehicle_checks import Problem, checked_value, unknown
+from railsym.vehicle_checks import Problem, checked_value, numeric, unknown
 from railsym.vehicle_layout import field_of
 from railsym.vehicle_parts import Quantity
 from railsym.vehicle_schema import ELEMENT_TYPES, Field, element_fields
@@ -120,7 +120,7 @@ def _new_quantity(layout, values, name, new):
     origin = REPLACED_ORIGIN
     if isinstance(new, Quantity):
         try:
-            new, origin = to_si(new.value, new.unit, field.unit), new.origin
+            new, origin = to_si(numeric(name, new.value), new.unit, field.unit), new.origin
         except UnitError as error:
             raise Problem(name, new.value, str(error)) from None
     return Quantity(checked_value(name, new, field), field.unit, origin)
@@ -144,7 +144,7 @@ def _set_component(values, name, base, index, new):
     scalar = Field(old.unit, "any")
     if isinstance(new, Quantity):
         try:
-            new = to_si(new.value, new.unit, old.unit)
+            new = to_si(numeric(name, new.value), new.unit, old.unit)
         except UnitError as error:
             raise Problem(name, new.value, str(error)) from None
     array = np.array(old.value)

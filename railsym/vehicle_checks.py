@@ -79,7 +79,7 @@ def checked_value(key, raw, field):
     ------
     Problem
     """
-    value = _numeric(key, raw)
+    value = numeric(key, raw)
     shape = () if isinstance(value, float) else value.shape
     if shape not in field.shapes and not ((-1,) in field.shapes and len(shape) == 1 and shape[0] >= 2):
         raise Problem(key, raw, f"holds {_counted(shape)}; allowed: {_shapes_text(field.shapes)}")
@@ -89,22 +89,30 @@ def checked_value(key, raw, field):
     return value
 
 
-def _numeric(key, raw):
-    """float, or ndarray of float that cannot be written to."""
-    if isinstance(raw, (int, float, np.integer, np.floating)) and not isinstance(raw, bool):
-        return float(raw)
-    if isinstance(raw, np.ndarray) and raw.dtype.kind in "iuf":
-        array = np.array(raw, dtype=float)
-    elif isinstance(raw, (list, tuple)) and all(
-        isinstance(item, (int, float, np.integer, np.floating)) and not isinstance(item, bool) for item in raw
-    ):
-        array = np.array(raw, dtype=float)
-    else:
+def numeric(key, raw):
+    """A number or list of numbers of any kind as float, or as ndarray of float that cannot be written to.
+
+    Raises
+    ------
+    Problem
+    """
+    if not _is_numeric(raw):
         raise Problem(key, raw, "a number or a list of numbers is needed")
+    try:
+        array = np.array(raw, dtype=float)
+    except OverflowError:
+        raise Problem(key, raw, "the number is too large") from None
     if array.ndim == 0:
         return float(array)
     array.setflags(write=False)
     return array
+
+
+def _is_numeric(raw):
+    if isinstance(raw, np.ndarray):
+        return raw.dtype.kind in "iuf"
+    items = raw if isinstance(raw, (list, tuple)) else (raw,)
+    return all(isinstance(i, (int, float, np.integer, np.floating)) and not isinstance(i, bool) for i in items)
 
 
 def _counted(shape):

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Strict reading: every kind of bad input is one error that names file, key, value, what is allowed, and the nearest match."""
 
+import copy
+import math
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
 
+from railsym import vehicle_file
 from railsym.errors import VehicleFileError
-from railsym.vehicle import load_vehicle
+from railsym.vehicle import Quantity, load_vehicle
 
 GOOD = """
 [vehicle]
@@ -257,3 +261,38 @@ def test_the_examples_of_the_docs_load(tmp_path):
     bench = vehicle.replace({"anti_yaw_damper.damping_curve": "bench", "anti_yaw_damper.series_stiffness": 2e6, "car.inertia.0": 6e4})
     assert bench.element("anti_yaw_damper.front_left").parameters["damping_curve"].y[-1] == 9000.0
     assert vehicle.configured("one_damper_absent").elements == ()
+
+
+def nodes(node, path=()):
+    """Path of every table, list and value of a parsed file."""
+    if path:
+        yield path
+    for key, child in node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ():
+        yield from nodes(child, (*path, key))
+
+
+@pytest.mark.parametrize("damage", [1, "x", [], {}, True, math.nan, 10**400, [[1, 2], "m"], ["a", "b"], [{}], {"a": 1}], ids=repr)
+def test_any_damage_is_one_error_of_the_reader(tmp_path, monkeypatch, damage):
+    # Each node of the good file in turn is overwritten: some files stay good, no other exception may come out.
+    good, refused, path = tomllib.loads(GOOD), 0, write(tmp_path, GOOD)
+    for *way, last in list(nodes(good)):
+        document = copy.deepcopy(good)
+        node = document
+        for key in way:
+            node = node[key]
+        node[last] = damage
+        monkeypatch.setattr(vehicle_file.tomllib, "loads", lambda _, document=document: document)
+        try:
+            load_vehicle(path)
+        except VehicleFileError as error:
+            assert str(error).startswith("trial.toml: ")
+            refused += 1
+    assert refused > 150
+
+
+@pytest.mark.parametrize("damage", [None, object(), 1j, {}, 10**400, [[]], [1, "m"], True, Quantity("a", "m", "x"), Quantity([1], "q", "x")])
+def test_any_damage_is_one_error_of_replace(damage):
+    vehicle = load_vehicle("manchester_vehicle1")
+    for name in [*vehicle.parameters, *vehicle.parameters.components(), "", "car", "car.", "lateral_bump_stop.curve"]:
+        with pytest.raises(VehicleFileError):
+            vehicle.replace({name: damage})
