@@ -90,9 +90,8 @@ class Model:
     def _element_columns(self, name, elements):
         """Inputs and coordinates of the elements of one kernel."""
         pair = self._pairs[name]
-        pose = relative_poses(self.track, 0.0, pair)
-        apart = pose["D"] + np.einsum("nij,nj->ni", pose["C"], pair.marker2) - pair.marker1
-        columns = {"m1_": pair.marker1, "m2_": pair.marker2, **pose}
+        apart = pair.apart  # on straight track: a curve deforms the elements, it does not make them longer
+        columns = {"m1_": pair.marker1, "m2_": pair.marker2, **relative_poses(self.track, 0.0, pair)}
         if name == "bushing":
             axes, (stiffness, damping) = np.array([e.axes for e in elements]), bushing_diagonals(elements)
             free = np.einsum("nji,nj->ni", axes, apart)
