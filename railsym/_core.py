@@ -201,7 +201,7 @@ class Assembly:
         if model == ffi.NULL:
             raise ModelError(f"a model of {self.size} coordinates cannot be created")
         self._model = ffi.gc(model, lib.rs_model_free)
-        self._counts, self._laws = {}, {}
+        self._is_angle, self._counts, self._laws = flags, {}, {}
 
     def add(self, name, inputs, index, laws=None):
         """Add every instance of one kernel.
@@ -221,6 +221,14 @@ class Assembly:
         if inputs.shape != (len(index), len(kernel.inputs)) or index.shape[1:] != (kernel.coordinates,):
             raise ModelError(f"{name}: inputs {inputs.shape} and index {index.shape} do not fit "
                              f"{len(kernel.inputs)} inputs and {kernel.coordinates} coordinates")
+        if laws is not None and len(laws.array) != len(index):
+            raise ModelError(f"{name}: {len(index)} instances need as many force laws, {len(laws.array)} were given")
+        turned = index[:, kernel.slots[:, 3] >= 0]
+        turned = turned[(turned >= 0) & (turned < self.size)]
+        if not self._is_angle[turned].all():
+            unknown = turned[self._is_angle[turned] == 0][0]
+            raise ModelError(f"{name}: coordinate {unknown} is an angle there, but the model was not made to compute its "
+                             "sine and cosine; set it in is_angle")
         pointers = laws.pointers if laws else ffi.NULL
         _check(lib.rs_model_add(self._model, kernel.number, len(index), _doubles(inputs),
                                 ffi.from_buffer("int[]", index), pointers), f"adding {name}")
