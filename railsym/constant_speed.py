@@ -2,7 +2,8 @@
 """Motions at another place along the track or at another constant speed: eigenvalue 0 twice, and no instability.
 
 A vehicle that nothing holds along the track may stand anywhere on it: uniform translation is a null vector of A. It may also
-roll a little faster: that state grows into translation, the second vector of a Jordan chain. A numerical eigenvalue routine
+roll a little faster: that state grows into translation, the second vector of a Jordan chain. (Where the wheels' spin creepage
+brakes, the second eigenvalue is not quite zero but that of the vehicle slowing down over hours.) A numerical eigenvalue routine
 returns such a pair as +-sqrt(roundoff). So the two are found by what they are and taken out of A exactly, by changing to
 coordinates relative to one body.
 """
@@ -17,8 +18,9 @@ from railsym.linear_model import LinearModel
 
 # rows of A z against the sum of their terms' sizes: what rounding leaves of an exact zero after some hundred operations
 _ROUNDING = 1e-9
-# the same after a projection, whose sums cancel from contact stiffnesses (1e9 N/m) down to the slowest modes (1 1/s2)
-_PROJECTED_ROUNDING = 1e-4
+# uniform speed as an eigenvector: bodies' speeds alike to this, and a time constant above 100 s
+_ALIKE = 1e-2
+_SLOW = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,19 +30,22 @@ class Deflated:
     Attributes
     ----------
     matrix : ndarray, shape (ns - k, ns - k)
-        State matrix with every eigenvalue of A but k zeros.
+        State matrix with every other eigenvalue of A.
     chain : ndarray, shape (ns, k)
-        Uniform translation and uniform speed, as states: A chain[:, 0] = 0, A chain[:, 1] = chain[:, 0]; k = 0, 1 or 2.
+        Uniform translation z0 and uniform speed z1 as states, k = 0, 1 or 2: A z0 = 0 and A z1 = z0 + mu z1.
+    eigenvalue : ndarray, shape (k,)
+        0 and mu, 1/s; mu is 0 unless creep brakes the vehicle.
     """
 
     matrix: np.ndarray
     chain: np.ndarray
+    eigenvalue: np.ndarray
     _steps: tuple
 
     def restore(self, eigenvalue, right, left):
         """Right and left eigenvectors (ns, m) of A from those (ns - k, m) of `matrix`."""
-        for matrix, vector, pivot, others in reversed(self._steps):
-            reference = (matrix[pivot, others] @ right) / eigenvalue
+        for row, vector, own, pivot, others in reversed(self._steps):
+            reference = (row @ right) / (eigenvalue - own)
             whole = np.zeros((len(vector), right.shape[1]), dtype=complex)
             whole[others] = right
             right = whole + np.outer(vector / vector[pivot], reference)
@@ -66,67 +71,73 @@ def deflate(model: LinearModel, speed: float, known: int | None = None) -> Defla
     """
     matrix = model.state_matrix(speed)
     translation = model.uniform_translation
-    nothing = Deflated(matrix, np.zeros((len(matrix), 0)), ())
+    nothing = Deflated(matrix, np.zeros((len(matrix), 0)), np.zeros(0), ())
     if translation is None or not translation.any() or known == 0:
         return nothing
     place = model.state_vector(translation, 0.0).real
     if known is None and not _is_null(matrix, place):
         return nothing
-    steps, relative = _eliminate(matrix, place)
-    _, _, pivot, others = steps
-    faster = _uniform_speed(model, translation)
-    vector = faster[others] - place[others] / place[pivot] * faster[pivot]
+    step, relative = _eliminate(matrix, place, 0.0)
+    *_, pivot, others = step
+    first = Deflated(relative, place[:, None], np.zeros(1), (step,))
     if known == 1:
-        return Deflated(relative, place[:, None], (steps,))
-    if not _is_null(relative, vector, _ROUNDING if known is None else _PROJECTED_ROUNDING):
-        vector = _null_vector(relative)
-        if known is None and not _is_null(relative, vector):
-            return Deflated(relative, place[:, None], (steps,))
-        faster = _chained(matrix, place, pivot, others, vector)
-    second, rest = _eliminate(relative, vector)
-    return Deflated(rest, np.column_stack([place, faster]), (steps, second))
+        return first
+    guess = _uniform_speed(model, translation)
+    vector, own = _nearby_eigenvector(relative, guess[others] - place[others] / place[pivot] * guess[pivot])
+    faster = np.zeros(len(place))
+    faster[others] = vector
+    if known is None and not _is_uniform(faster, guess, own):
+        return first
+    second, rest = _eliminate(relative, vector, own)
+    # z1 has no displacement but what it needs: its part along z0 is free, and zero in the reference coordinate
+    rate = (matrix[pivot] @ faster) / place[pivot]
+    return Deflated(rest, np.column_stack([place, faster / rate]), np.array([0.0, own]), (step, second))
 
 
-def _is_null(matrix, vector, rounding=_ROUNDING) -> bool:
+def _is_null(matrix, vector) -> bool:
     size = np.abs(matrix) @ np.abs(vector)
-    return bool((np.abs(matrix @ vector) <= rounding * size).all())
+    return bool((np.abs(matrix @ vector) <= _ROUNDING * size).all())
 
 
-def _eliminate(matrix, vector):
-    """Change to x_i - (z_i / z_p) x_p, whose column p is zero when A z = 0, and drop x_p."""
+def _is_uniform(state, guess, own) -> bool:
+    """Do all bodies move at one speed, and keep it for long?"""
+    moving = guess != 0
+    alike = state[moving] / guess[moving]
+    return abs(own) < _SLOW and bool((np.abs(alike / alike.mean() - 1.0) < _ALIKE).all())
+
+
+def _eliminate(matrix, vector, own):
+    """Change to x_i - (z_i / z_p) x_p, in which A z = own z is the coordinate axis p, and drop x_p."""
     pivot = int(np.argmax(np.abs(vector)))
     others = np.delete(np.arange(len(vector)), pivot)
-    ratio = vector[others] / vector[pivot]
-    relative = matrix[np.ix_(others, others)] - np.outer(ratio, matrix[pivot, others])
-    return (matrix, vector, pivot, others), relative
+    row = matrix[pivot, others]
+    relative = matrix[others[:, None], others] - np.outer(vector[others] / vector[pivot], row)
+    return (row, vector, own, pivot, others), relative
 
 
 def _uniform_speed(model: LinearModel, translation):
     """State of all bodies 1 m/s faster, wheels turning faster so that they do not creep."""
     rate = translation.copy()
-    turning = model.damping_inverse_speed[:, model.cyclic]
-    rate[model.cyclic] = -np.linalg.lstsq(turning, model.damping_inverse_speed @ translation, rcond=None)[0]
+    if model.cyclic.any():
+        turning = model.damping_inverse_speed[:, model.cyclic]
+        rate[model.cyclic] = -np.linalg.lstsq(turning, model.damping_inverse_speed @ translation, rcond=None)[0]
     moving = ~model.first_order
     return np.concatenate([np.zeros(np.count_nonzero(moving & ~model.cyclic)), rate[moving],
                            np.zeros(np.count_nonzero(model.first_order))])
 
 
-def _null_vector(matrix):
-    """Candidate null vector by inverse iteration: for vehicles that another speed also shifts statically."""
-    from scipy.linalg import lu_factor, lu_solve, matrix_balance
+def _nearby_eigenvector(matrix, guess):
+    """The eigenvector of the eigenvalue nearest 0, from a guess, and that eigenvalue: inverse iteration."""
+    from scipy.linalg.lapack import dgetrf, dgetrs
 
-    balanced, (scale, _) = matrix_balance(matrix, permute=False, separate=True)
-    nudge = 1e-15 * np.abs(balanced).max()
-    factors = lu_factor(balanced + nudge * np.eye(len(matrix)), check_finite=False)
-    vector = np.ones(len(matrix))
+    if _is_null(matrix, guess):
+        return guess, 0.0
+    factors, pivots, status = dgetrf(matrix)
+    if status > 0:
+        return guess, 0.0
+    largest = int(np.argmax(np.abs(guess)))
+    vector = guess
     for _ in range(3):
-        vector = lu_solve(factors, vector / np.abs(vector).max(), check_finite=False)
-    return scale * vector / np.abs(vector).max()
-
-
-def _chained(matrix, place, pivot, others, vector):
-    """z1 with A z1 = z0 from the null vector of the relative problem: scale by the rate of the reference coordinate."""
-    rate = matrix[pivot, others] @ vector / place[pivot]
-    faster = np.zeros(len(place))
-    faster[others] = vector / rate
-    return faster
+        following, _ = dgetrs(factors, pivots, vector)
+        vector, own = following * (guess[largest] / following[largest]), vector[largest] / following[largest]
+    return vector, float(own)

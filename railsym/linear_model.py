@@ -11,7 +11,7 @@ cyclic: its column in K is zero and it is no state.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -121,8 +121,13 @@ class LinearModel:
     def state_matrix(self, speed: float) -> np.ndarray:
         """A of x' = A x at a speed in m/s, shape (ns, ns), rows as `states`; a fresh array on every call."""
         _check_speed(speed)
-        constant, index, with_speed, with_inverse_speed = self._state_matrix_parts
-        matrix = constant.copy()
+        if self._calls:
+            constant, index, with_speed, with_inverse_speed = self._state_matrix_parts
+            matrix = constant.copy()
+        else:
+            # most models are asked once: build A in place and keep nothing, since touching new memory costs more than filling it
+            self._calls.append(speed)
+            matrix, index, with_speed, with_inverse_speed = _state_matrix_parts(self)
         matrix.ravel()[index] += speed * with_speed + with_inverse_speed / speed
         return matrix
 
@@ -133,6 +138,11 @@ class LinearModel:
         matrix = np.zeros_like(constant)
         matrix.ravel()[index] = with_speed - with_inverse_speed / speed**2
         return matrix
+
+    @cached_property
+    def _calls(self) -> list:
+        """The first speed that a state matrix was asked for."""
+        return []
 
     @cached_property
     def _state_matrix_parts(self):
@@ -160,12 +170,17 @@ class LinearModel:
         The rate and internal rows of A are -G^-1 times the forces, G = [[M, Cvs], [0, Css]]: so G^H y is their part of it.
         """
         parts = _state_parts(self)
-        v, s = parts.second, parts.first
-        both = np.concatenate([v, s])
-        inertia = np.hstack([self.mass[np.ix_(both, v)], self.damping_constant[np.ix_(both, s)]])
         left = np.zeros((self.size,) + state.shape[1:], dtype=complex)
-        left[both] = np.linalg.solve(inertia.T, state[len(parts.position):])
+        left[np.concatenate([parts.second, parts.first])] = self._inertia_inverse.T @ state[len(parts.position):]
         return left
+
+    @cached_property
+    def _inertia_inverse(self) -> np.ndarray:
+        """G^-1, G = [[M, Cvs], [0, Css]]."""
+        parts = _state_parts(self)
+        both = np.concatenate([parts.second, parts.first])
+        columns = self.mass[both[:, None], parts.second], self.damping_constant[both[:, None], parts.first]
+        return np.linalg.inv(np.hstack(columns))
 
     @cached_property
     def uniform_translation(self) -> np.ndarray | None:
@@ -208,18 +223,33 @@ class Linearisation:
         return modes(self.model, self.speed, **options)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _StateParts:
-    """Indices of the coordinates behind the three parts of the state."""
+    """Indices of the coordinates behind the three parts of the state, and the same as runs of consecutive ones."""
 
     position: np.ndarray
     second: np.ndarray
     first: np.ndarray
+    runs: dict
 
 
 def _state_parts(model: LinearModel) -> _StateParts:
-    return _StateParts(np.flatnonzero(~model.first_order & ~model.cyclic), np.flatnonzero(~model.first_order),
-                       np.flatnonzero(model.first_order))
+    return _parts_of_masks(model.first_order.tobytes(), model.cyclic.tobytes())
+
+
+@lru_cache(maxsize=64)
+def _parts_of_masks(first_order: bytes, cyclic: bytes) -> _StateParts:
+    internal, turning = np.frombuffer(first_order, bool), np.frombuffer(cyclic, bool)
+    index = {"position": np.flatnonzero(~internal & ~turning), "second": np.flatnonzero(~internal),
+             "first": np.flatnonzero(internal)}
+    return _StateParts(**index, runs={name: _runs(i) for name, i in index.items()})
+
+
+def _runs(index):
+    """Consecutive numbers as (start in the list, slice of the numbers): copying slices is many times faster than indexing."""
+    breaks = np.flatnonzero(np.diff(index) != 1) + 1
+    return [(int(start), slice(int(index[start]), int(index[start]) + int(stop - start)))
+            for start, stop in zip(np.r_[0, breaks], np.r_[breaks, len(index)]) if stop > start]
 
 
 def _check_speed(speed: float) -> None:
@@ -235,67 +265,96 @@ def _state_matrix_parts(model: LinearModel):
     """
     parts = _state_parts(model)
     v, s = parts.second, parts.first
-    if any(matrix[s].any() or matrix[:, s].any() for matrix in (model.damping_speed, model.damping_inverse_speed)):
-        raise ModelError("the damping of internal (Maxwell) coordinates depends on speed; state matrices need it constant")
     count, n_position = len(v), len(parts.position)
     matrix = np.zeros((n_position + count + len(s),) * 2)
     rate, internal = slice(n_position, n_position + count), slice(n_position + count, None)
     matrix[np.arange(n_position), n_position + np.searchsorted(v, parts.position)] = 1.0
-    inverse = _BlockInverse(model.mass[np.ix_(v, v)])
-    force = np.hstack([model.stiffness[np.ix_(v, parts.position)], model.damping_constant[np.ix_(v, v)],
-                       model.stiffness[np.ix_(v, s)]])
+    _place_rows(matrix[rate], parts, "second", model, (n_position, n_position + count))
     if len(s):
-        matrix[internal] = -_solve_internal(model, parts)
-        coupling = model.damping_constant[np.ix_(v, s)]
+        _place_rows(matrix[internal], parts, "first", model, (n_position, n_position + count))
+        _divide_internal(matrix[internal], model, parts)
+        coupling = model.damping_constant[v[:, None], s]
         if coupling.any():
-            force += coupling @ matrix[internal]
-    matrix[rate] = -(inverse @ force)
-    changing = (model.damping_speed != 0) | (model.damping_inverse_speed != 0)
-    columns = np.flatnonzero(changing[:, v].any(axis=0))
-    with_speed = -(inverse @ model.damping_speed[np.ix_(v, v[columns])])
-    with_inverse_speed = -(inverse @ model.damping_inverse_speed[np.ix_(v, v[columns])])
-    row, column = np.nonzero((with_speed != 0) | (with_inverse_speed != 0))
-    index = (n_position + row) * len(matrix) + n_position + columns[column]
-    return matrix, index, with_speed[row, column], with_inverse_speed[row, column]
+            matrix[rate] += coupling @ matrix[internal]
+    inverse = _BlockInverse(model.mass, v)
+    inverse.apply(matrix[rate])
+    np.negative(matrix[rate], out=matrix[rate])
+    return matrix, *_changing_entries(model, parts, inverse, n_position, len(matrix))
 
 
-def _solve_internal(model: LinearModel, parts: _StateParts) -> np.ndarray:
-    """Css^-1 [Ksq, Csv, Kss], shape (number of internal coordinates, ns)."""
-    v, s = parts.second, parts.first
-    right = np.hstack([model.stiffness[np.ix_(s, parts.position)], model.damping_constant[np.ix_(s, v)],
-                       model.stiffness[np.ix_(s, s)]])
-    damping = model.damping_constant[np.ix_(s, s)]
+def _place_rows(target, parts, rows, model, starts):
+    """Copy K over positions, C0 over rates and K over internal coordinates into rows of the state matrix."""
+    for matrix, columns, start in ((model.stiffness, "position", 0), (model.damping_constant, "second", starts[0]),
+                                   (model.stiffness, "first", starts[1])):
+        for r, source_rows in parts.runs[rows]:
+            for c, source_columns in parts.runs[columns]:
+                block = matrix[source_rows, source_columns]
+                target[r:r + block.shape[0], start + c:start + c + block.shape[1]] = block
+
+
+def _changing_entries(model, parts, inverse, n_position, size):
+    """Flat places in A where it depends on speed, and the values of A1 and A2 there."""
+    v = parts.second
+    row, column = np.divmod(np.flatnonzero((model.damping_speed != 0) | (model.damping_inverse_speed != 0)), model.size)
+    if model.first_order[row].any() or model.first_order[column].any():
+        raise ModelError("the damping of internal (Maxwell) coordinates depends on speed; state matrices need it constant")
+    columns = np.unique(column)
+    values = []
+    for matrix in (model.damping_speed, model.damping_inverse_speed):
+        part = matrix[v[:, None], columns]
+        inverse.apply(part)
+        values.append(-part)
+    row, column = np.nonzero((values[0] != 0) | (values[1] != 0))
+    index = (n_position + row) * size + n_position + np.searchsorted(v, columns)[column]
+    return index, values[0][row, column], values[1][row, column]
+
+
+def _divide_internal(rows, model: LinearModel, parts: _StateParts) -> None:
+    """rows := -Css^-1 rows, in place."""
+    s = parts.first
+    damping = model.damping_constant[s[:, None], s]
     diagonal = damping.diagonal()
     if not diagonal.all():
         name = model.coordinates[s[np.flatnonzero(diagonal == 0)[0]]]
         raise ModelError(f"internal coordinate {name} has no damping, so it has no first-order equation; "
                          "give the Maxwell element a damping above 0 N*s/m or use a spring")
     if np.count_nonzero(damping) == len(s):
-        return right / diagonal[:, None]
-    return np.linalg.solve(damping, right)
+        rows /= -diagonal[:, None]
+    else:
+        rows[:] = -np.linalg.solve(damping, rows)
 
 
 class _BlockInverse:
     """Inverse of a mass matrix made of blocks on the diagonal (one a body), applied by blocks of equal size."""
 
-    def __init__(self, mass: np.ndarray):
-        filled = mass != 0
-        size = len(mass)
-        reach = size - 1 - np.argmax(filled[:, ::-1], axis=1) if size else np.zeros(0, int)
-        end = np.flatnonzero(np.maximum.accumulate(np.maximum(reach, np.arange(size))) == np.arange(size)) + 1
-        start = np.concatenate([[0], end[:-1]]).astype(int)
+    def __init__(self, mass: np.ndarray, index: np.ndarray):
+        runs = _runs(index)
+        mass = mass[runs[0][1], runs[0][1]] if len(runs) == 1 else mass[index[:, None], index]
+        self.diagonal = mass.diagonal()
         self.blocks = []
-        for width in np.unique(end - start):
-            index = start[end - start == width][:, None] + np.arange(width)
-            block = mass[index[:, :, None], index[:, None, :]]
+        if np.count_nonzero(mass) == np.count_nonzero(self.diagonal):
+            if not self.diagonal.all():
+                raise ModelError("the mass matrix is singular: a second-order coordinate without inertia")
+            return
+        for rows in _blocks(mass):
             try:
-                self.blocks.append((index, 1.0 / block if width == 1 else np.linalg.inv(block)))
+                self.blocks.append((rows, np.linalg.inv(mass[rows[:, :, None], rows[:, None, :]])))
             except np.linalg.LinAlgError as error:
                 raise ModelError("the mass matrix is singular: a second-order coordinate without inertia") from error
 
-    def __matmul__(self, right: np.ndarray) -> np.ndarray:
-        result = np.empty_like(right)
-        for index, inverse in self.blocks:
-            rows = right[index]
-            result[index] = inverse * rows if index.shape[1] == 1 else inverse @ rows
-        return result
+    def apply(self, right: np.ndarray) -> None:
+        """right := M^-1 right, in place."""
+        if not self.blocks:
+            right /= self.diagonal[:, None]
+        for rows, inverse in self.blocks:
+            right[rows] = inverse @ right[rows]
+
+
+def _blocks(mass):
+    """Rows of the diagonal blocks of a matrix, (number, width) for every width."""
+    filled = mass != 0
+    size = np.arange(len(mass))
+    reach = np.maximum(len(mass) - 1 - np.argmax(filled[:, ::-1], axis=1), len(mass) - 1 - np.argmax(filled.T[:, ::-1], axis=1))
+    end = np.flatnonzero(np.maximum.accumulate(np.maximum(reach, size)) == size) + 1
+    start = np.concatenate([[0], end[:-1]])
+    return [start[end - start == width][:, None] + np.arange(width) for width in np.unique(end - start)]

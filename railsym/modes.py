@@ -128,9 +128,9 @@ class Modes(Sequence):
         return tuple(mode for mode in self.modes if mode.eigenvalue.real > _NEUTRAL * abs(mode.eigenvalue))
 
     def plot(self, **options):
-        """Draw the modes; options and axes as in `railsym.plots`."""
-        from railsym import plots
-        return plots.plot_modes(self, **options)
+        """Draw the eigenvalues; options and axes as `railsym.plots.plot_eigenvalues`."""
+        from railsym.plots import plot_eigenvalues
+        return plot_eigenvalues(self, **options)
 
 
 def modes(model: LinearModel, speed: float) -> Modes:
@@ -189,7 +189,7 @@ def _modes_of_part(part: Part, speed, labels):
     parity = _PARITY[part.parity]
     found = [Mode(complex(value[k]), whole.coordinates, x[:, k], y[:, k], labels.label(value[k], x[:, k], speed), parity)
              for k in range(len(value))]
-    return found, _constant_speed_modes(part, deflated.chain, parity)
+    return found, _constant_speed_modes(part, deflated, parity)
 
 
 def _largest(x, labels):
@@ -203,12 +203,13 @@ def _largest(x, labels):
     return np.where(np.abs(displacement) > _NEUTRAL * np.abs(overall), displacement, overall)
 
 
-def _constant_speed_modes(part: Part, chain, parity):
+def _constant_speed_modes(part: Part, deflated, parity):
     """Uniform translation, and uniform speed with the rates of the coordinates as its shape."""
     model, names = part.model, part.whole.coordinates
     nothing = np.zeros(part.whole.size, dtype=complex)
     second = np.flatnonzero(~model.first_order)
     found = []
+    chain = deflated.chain
     for k, label in zip(range(chain.shape[1]), ("uniform translation", "uniform speed")):
         shape = np.zeros(model.size, dtype=complex)
         if k == 0:
@@ -216,5 +217,5 @@ def _constant_speed_modes(part: Part, chain, parity):
         else:
             start = np.count_nonzero(~model.first_order & ~model.cyclic)
             shape[second] = chain[start:start + len(second), 1]
-        found.append(Mode(0j, names, part.expand(shape), nothing, label, parity))
+        found.append(Mode(complex(deflated.eigenvalue[k]), names, part.expand(shape), nothing, label, parity))
     return found

@@ -22,7 +22,7 @@ import numpy as np
 from railsym.errors import ConvergenceError
 from railsym.linear_model import LinearModel
 
-_STEP = 1e-11          # relative step after which Newton's quadratic convergence leaves rounding only
+_STEP = 1e-7           # relative step after which Newton's quadratic convergence leaves rounding only
 _MOST_STEPS = 25
 _LONGEST = 0.25        # largest relative change of V or omega in one step
 

@@ -19,14 +19,17 @@ from railsym.linear_model import LinearModel
 from railsym.polish import EigenPoint, polish_crossing, polish_eigenvalue
 from railsym.reduction import Reduction, reduce_model
 
-_FIRST_STEP = 0.4          # in log(speed): ten intervals from 5 to 250 m/s
+_FIRST_STEP = 0.5          # in log(speed): eight intervals from 5 to 250 m/s
 _SMALLEST_STEP = 2e-3      # in log(speed): paths that are not resolved at 0.2 % of the speed are reported
 _SIMILAR = 0.5             # product of two biorthogonalities: 1 for one and the same mode
 _WATCH = 0.12              # modes within this of the highest damping ratio asked for are followed closely
 _SMOOTH = 0.05             # kink of a path, relative to the eigenvalue, that similar vectors make credible
 _CLEAR = 0.005             # kink so small that the vectors need not be alike: nearly equal modes mix freely
 _NEUTRAL = 1e-9            # |Re lambda| / |lambda| of a mode without damping, after rounding
-_REDUCTION_ERROR = 0.01    # relative correction of a watched eigenvalue above which the basis is enriched
+# The basis is enriched where dropped modes move a watched eigenvalue by more than this share of itself and by more than its
+# distance from the nearest criterion: less cannot hide a crossing.
+_REDUCTION_ERROR = 1e-2
+_REDUCTION_MARGIN = 1.0
 _GRID = np.linspace(0.0, 1.0, 17)
 
 
@@ -129,15 +132,10 @@ class SpeedScan:
 
     def node(self, speed) -> ScanNode:
         """Solve the reduced eigenproblem at a speed in m/s."""
-        from scipy.linalg import eig
-
         reduced = self.reduction.model
         deflated = deflate(reduced, speed, self.known)
-        value, left, right = eig(deflated.matrix, left=True, right=True, check_finite=False, overwrite_a=not self.known)
-        above = np.flatnonzero(value.imag > 0)
-        divergent = value.real[(value.imag == 0) & (value.real > _NEUTRAL * np.abs(value).max())]
-        value = value[above]
-        right, left = deflated.restore(value, right[:, above], left[:, above])
+        value, right, left, divergent = _oscillations(deflated.matrix)
+        right, left = deflated.restore(value, right, left)
         left = left / (left.conj() * right).sum(axis=0).conj()
         x, y = reduced.shape_vector(right, value), reduced.left_vector(left)
         loss = ((2 * value * (reduced.mass @ x) + reduced.damping(speed) @ x) * y.conj()).sum(axis=0)
@@ -158,6 +156,19 @@ class SpeedScan:
         following = np.full(len(second.eigenvalue), -1)
         following[pairs[1]] = paths[pairs[0]]
         return following
+
+
+def _oscillations(matrix):
+    """Eigenvalues with positive imaginary part and their right and left vectors; and the real positive eigenvalues."""
+    from scipy.linalg.lapack import dgeev
+
+    real, imaginary, left, right, status = dgeev(matrix)
+    if status:
+        raise ConvergenceError(f"eigenvalues of a reduced model of {len(matrix)} states did not converge; check the vehicle's data")
+    divergent = real[(imaginary == 0) & (real > _NEUTRAL * np.abs(real).max())]
+    above = np.flatnonzero(imaginary > 0)
+    # LAPACK puts the real and the imaginary part of a pair's vector in neighbouring columns
+    return real[above] + 1j * imaginary[above], *(v[:, above] + 1j * v[:, above + 1] for v in (right, left)), divergent
 
 
 def excess(eigenvalue, damping_ratio):
@@ -203,14 +214,14 @@ def scan_speeds(model: LinearModel, damping_ratios, speed_range, frequency_limit
 
 def _first_nodes(scan: SpeedScan, speeds):
     """Nodes at the first speeds; the basis is enriched, once, where the dropped modes matter."""
-    nodes = [scan.node(speed) for speed in speeds]
-    missing = [shape for node in nodes[::3] for shape in _missing(scan, node)]
-    if not missing:
-        return nodes
-    shapes = np.column_stack([part for shape in missing for part in (shape.real, shape.imag)])
-    limit = np.sqrt(scan.reduction.dropped_stiffness.min()) / (2 * np.pi)
-    scan.reduction = reduce_model(scan.model, limit, _main_directions(shapes, scan.model.mass))
-    return [scan.node(speed) for speed in speeds]
+    probes = {k: scan.node(speeds[k]) for k in (0, len(speeds) // 2, len(speeds) - 1)}
+    missing = [shape for node in probes.values() for shape in _missing(scan, node)]
+    if missing:
+        shapes = np.column_stack([part for shape in missing for part in (shape.real, shape.imag)])
+        limit = np.sqrt(scan.reduction.dropped_stiffness.min()) / (2 * np.pi)
+        scan.reduction = reduce_model(scan.model, limit, _main_directions(shapes, scan.model.mass))
+        probes = {}
+    return [probes[k] if k in probes else scan.node(speed) for k, speed in enumerate(speeds)]
 
 
 def _missing(scan: SpeedScan, node):
@@ -218,8 +229,11 @@ def _missing(scan: SpeedScan, node):
     if not scan.reduction.dropped.shape[1]:
         return []
     watched = np.flatnonzero(excess(node.eigenvalue, max(scan.damping_ratios) + _WATCH) > 0)
-    change, missing = scan.reduction.correction(node.eigenvalue[watched], node.speed, node.right[:, watched], node.left[:, watched])
-    return [missing[:, i] for i in np.flatnonzero(np.abs(change) > _REDUCTION_ERROR * np.abs(node.eigenvalue[watched]))]
+    value = node.eigenvalue[watched]
+    change, missing = scan.reduction.correction(value, node.speed, node.right[:, watched], node.left[:, watched])
+    distance = np.min([np.abs(excess(value + change, z)) for z in scan.damping_ratios], axis=0)
+    poor = (np.abs(change) > _REDUCTION_ERROR * np.abs(value)) & (np.abs(change) > _REDUCTION_MARGIN * distance)
+    return [missing[:, i] for i in np.flatnonzero(poor)]
 
 
 def _main_directions(shapes, mass):

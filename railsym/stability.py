@@ -22,7 +22,7 @@ from railsym.symmetry import Part, split
 FREQUENCY_BAND = (0.3, 20.0)      # Hz, of hunting and of the car body on its suspension
 _BASIS = 1.25                     # frequency limit of the reduced model over the upper end of the band
 _NEAR = 0.03                      # crossings this near each other, relatively, may swap places when polished
-_LATERAL = 0.5                    # share of the kinetic energy in y, yaw and roll
+_LATERAL = 0.1                    # share of the kinetic energy in y, yaw and roll of a motion that takes part in hunting
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +81,12 @@ class Stability:
         Where the vehicle becomes unstable or stable, in the order of speed.
     message : str
         What was found.
-    speeds : int
-        At how many speeds an eigenproblem was solved.
+    scanned_speeds, newton_steps : int
+        At how many speeds the reduced eigenproblem was solved, and steps of Newton's method on the full one.
+    damping_ratio : float
+        The criterion.
+    unstable_at_start : bool
+        Unstable already at the lowest speed.
     """
 
     speed: float | None
@@ -90,7 +94,10 @@ class Stability:
     crossings: tuple[CriticalCrossing, ...]
     label: str
     message: str
-    speeds: int
+    scanned_speeds: int
+    newton_steps: int
+    damping_ratio: float
+    unstable_at_start: bool
 
 
 def stability(model: LinearModel, damping_ratios: Sequence[float] = (0.0,), speed_range=(5.0, 250.0),
@@ -300,11 +307,12 @@ class _Search:
         if not crossings and not self.unstable:
             notes.insert(0, f"no mode becomes {self._state()} between {speed_range[0]:g} and {speed_range[1]:g} m/s")
         steps = sum(e.point.steps for e in self.events if e.point is not None)
-        speeds = sum(len(scan.nodes) for _, scan in self.scans) + steps
+        nodes = sum(len(scan.nodes) for _, scan in self.scans)
         message = "; ".join(str(note) for note in dict.fromkeys(notes))
+        common = (message, nodes, steps, self.damping_ratio, bool(self.unstable))
         if onset is None:
-            return Stability(None, None, crossings, "", message, speeds)
-        return Stability(onset.speed, onset.frequency_hz, crossings, onset.label, message, speeds)
+            return Stability(None, None, crossings, "", *common)
+        return Stability(onset.speed, onset.frequency_hz, crossings, onset.label, *common)
 
 
 def _without_repeats(events):

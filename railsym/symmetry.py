@@ -18,6 +18,7 @@ from railsym.linear_model import LinearModel
 _SIGN = {"x": 1.0, "y": -1.0, "z": 1.0, "yaw": -1.0, "roll": -1.0, "pitch": 1.0, "spin": 1.0}
 _PLACE = 1e-6               # m, two positions that differ less are one
 _DIFFERENCE = 1e-9          # of the largest entry in a row: assembling in another order moves the last digits only
+_ROUNDING = 1e-14           # of the largest entry of a matrix
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +90,9 @@ def _commutes(matrix, permutation, sign) -> bool:
     row, column = np.nonzero(matrix)
     value = matrix[row, column]
     image = matrix[permutation[row], permutation[column]] * (sign[row] * sign[column])
-    allowed = _DIFFERENCE * np.abs(matrix).max(axis=1)
+    rows = np.abs(matrix).max(axis=1)
+    # rows that are zero but for rounding are measured against the whole matrix
+    allowed = np.maximum(_DIFFERENCE * rows, _ROUNDING * rows.max())
     return bool((np.abs(image - value) <= allowed[row]).all())
 
 
