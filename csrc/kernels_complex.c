@@ -16,13 +16,11 @@
 
 #include "generated/kernels.h"
 
-typedef void kernel_function(const rs_lane *, const rs_law *const *, const double *, rs_lane *, rs_lane *);
-
 int rs_kernel_complex(int kernel, const double *in, const rs_law *law, const double *seed,
                       double *r, double *S)
 {
 #define ENTRY(name, inputs, coordinates, entries, has_law) RS_NAME(name),
-	static kernel_function *const table[] = {RS_KERNELS(ENTRY)};
+	static RS_NAME(kernel_type) *const table[] = {RS_KERNELS(ENTRY)};
 	if (kernel < 0 || kernel >= rs_kernel_count())
 		return RS_BAD_INDEX;
 	table[kernel]((const rs_lane *)in, &law, seed, (rs_lane *)r, (rs_lane *)S);

@@ -1,24 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The generated kernels on real lanes, and their descriptions. */
+/* The table of kernels on real lanes, and their descriptions. */
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "kernels.h"
 #include "lanes.h"
-#include "laws.h"
 
 #include "generated/kernels.h"
 
-#include "generated/axis.h"
-#include "generated/bushing.h"
-#include "generated/line.h"
-#include "generated/rigid_body.h"
-#include "generated/wheel_rail.h"
-#include "generated/wheelset.h"
-#include "generated/wheelset_with_axleboxes.h"
-
-typedef void kernel_function(const rs_lane *, const rs_law *const *, const double *, rs_lane *, rs_lane *);
+#define DECLARE(name, inputs, coordinates, entries, has_law) RS_NAME(kernel_type) RS_NAME(name);
+RS_KERNELS(DECLARE)
 
 #define DESCRIBE(name, inputs, coordinates, entries, has_law) \
 	{#name, inputs, coordinates, entries, has_law, \
@@ -50,7 +42,7 @@ void rs_kernel_call(int kernel, const void *in, const rs_law *const *laws, const
                     void *r, void *S)
 {
 #define ENTRY(name, inputs, coordinates, entries, has_law) RS_NAME(name),
-	static kernel_function *const table[] = {RS_KERNELS(ENTRY)};
+	static RS_NAME(kernel_type) *const table[] = {RS_KERNELS(ENTRY)};
 	table[kernel](in, laws, seed, r, S);
 }
 

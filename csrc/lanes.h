@@ -33,15 +33,19 @@ typedef double rs_lane;
 #endif
 #define RS_NAME(x) rs_##x##_lanes
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__) && defined(__GNUC__)
-#define RS_KERNEL static __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
+#define RS_KERNEL __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
 #else
-#define RS_KERNEL static
+#define RS_KERNEL
 #endif
 #define RS_SQRT(to, from) \
 	for (int lane_ = 0; lane_ < RS_LANES; lane_++) \
 		((double *)&(to))[lane_] = sqrt(((const double *)&(from))[lane_])
 #define RS_REAL(x) (x)
 #endif
+
+/* The residual of one kernel and, unless pencil is NULL, its pencil. */
+typedef void RS_NAME(kernel_type)(const rs_lane *in, const rs_law *const *laws, const double *seed,
+                             rs_lane *residual, rs_lane *pencil);
 
 /* Spreads a number over a lane: vector types add a scalar to each element. */
 static const rs_lane RS_ZERO = {0};
