@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables, JSON and pictures of the command line."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+from railsym.cli_values import CommandError
+
+
+def table(header, rows, left=(0,)):
+    """Text table: the columns in ``left`` (by number) aligned left, the others right.
+
+    Parameters
+    ----------
+    header : sequence of str
+    rows : sequence of sequence of str
+
+    Returns
+    -------
+    str
+    """
+    widths = [max(len(row[k]) for row in [header, *rows]) for k in range(len(header))]
+
+    def line(cells):
+        padded = (c.ljust(w) if k in left else c.rjust(w) for k, (c, w) in enumerate(zip(cells, widths)))
+        return "  ".join(padded).rstrip()
+
+    return "\n".join([line(header), "-" * len(line(["-" * w for w in widths])), *map(line, rows)])
+
+
+def write_json(content, target):
+    """Write JSON to a file, or to standard output where ``target`` is "-".
+
+    Raises
+    ------
+    CommandError
+        If the file cannot be written.
+    """
+    text = json.dumps(content, indent=2, allow_nan=False) + "\n"
+    if target == "-":
+        sys.stdout.write(text)
+        return
+    try:
+        Path(target).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise CommandError(f"--json {target}: {error.strerror}") from None
+
+
+def check_plot_path(path):
+    """Refuse a picture that could not be saved, before anything is computed.
+
+    Raises
+    ------
+    CommandError
+        If the directory does not exist or Matplotlib does not know the format.
+    """
+    if path is None:
+        return
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    formats = FigureCanvasAgg.get_supported_filetypes()
+    if Path(path).suffix[1:].lower() not in formats:
+        raise CommandError(f"--plot {path}: the name must end in one of {', '.join('.' + name for name in sorted(formats))}")
+    if not Path(path).resolve().parent.is_dir():
+        raise CommandError(f"--plot {path}: there is no directory {Path(path).resolve().parent}")
+
+
+def save_plot(draw, path):
+    """Save the picture that ``draw()`` makes (it returns axes) without opening a window."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from railsym.plots.style import save
+
+    try:
+        save(draw(), path)
+    except OSError as error:
+        raise CommandError(f"--plot {path}: {error.strerror}") from None
