@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
 /* Declarations that cffi reads (no preprocessor here); railsym.h includes this file and
  * holds the contracts. */
 

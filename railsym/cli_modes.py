@@ -13,6 +13,8 @@ from railsym.contact import LinearContact
 from railsym.plots.style import KMH
 from railsym.vehicle import load_vehicle, vehicles
 
+_SLOWEST = 0.01      # Hz: slower is no oscillation that anybody would look for
+
 
 def list_vehicles(options):
     """Show the vehicles that come along."""
@@ -82,7 +84,7 @@ def _show_one(vehicle, model, speed, options):
     from railsym.modes import modes
 
     found = modes(model, float(speed[0]))
-    listed = [(k, m) for k, m in enumerate(found) if 0.0 < m.frequency_hz <= options.frequency]
+    listed = [(k, m) for k, m in enumerate(found) if _SLOWEST < m.frequency_hz <= options.frequency]
     if not listed and options.mode is None:
         raise CommandError(f"no mode oscillates at up to {options.frequency:g} Hz; ask for a higher --frequency")
     drawn = _drawn_mode(found, listed, options.mode)

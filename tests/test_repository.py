@@ -2,6 +2,7 @@
 """House rules that a reader relies on: licence line, size of files, seeded random numbers."""
 
 import ast
+import re
 import subprocess
 from pathlib import Path
 
