@@ -225,8 +225,8 @@ def _eigenvalue_derivative(point, parameter: Parameter) -> complex:
 
 
 def _one_sided(form, side):
-    """Difference over one step of the same order as the central one, for values at the edge of what is permitted."""
-    return 2 * form(side) - 1.5 * form(0) - 0.5 * form(2 * side)
+    """Second-order difference times the step, at the edge of what is permitted; y^H T x = 0 at the critical point itself."""
+    return 2 * form(side) - 0.5 * form(2 * side)
 
 
 def _form(point, model: LinearModel) -> complex:

@@ -264,3 +264,48 @@ class Train:
     def _wheel(self, assembly, name, side, radius):
         creep = self.kalker_weight * np.array([1.05e7, 0.95e7, 2.2e4, 80.0])
         assembly.wheel(name, side, 63e3, self.conicity, creep, 0.75, radius, 90.0)
+
+
+@dataclass(frozen=True)
+class CrossingPaths:
+    """A gyroscopic pair, whose frequencies part with speed, and an oscillator that one of them passes; seen through a mixture."""
+
+    gyroscopic: float = 0.2
+    pair: float = 10.0
+    single: float = 16.0
+    damping: float = 0.5
+
+    def model(self, seed: int = 3) -> LinearModel:
+        mix = np.eye(3) + 0.3 * np.random.default_rng(seed).normal(size=(3, 3))
+        turning = np.zeros((3, 3))
+        turning[0, 1], turning[1, 0] = -self.gyroscopic, self.gyroscopic
+
+        def seen(matrix):
+            return mix.T @ matrix @ mix
+
+        return model_of(["car.y", "car.z", "bogie1.y"], seen(np.eye(3)), seen(np.diag([self.pair, self.pair, self.single]) ** 2),
+                        seen(np.diag([0.0, 0.0, self.damping])), seen(turning), np.zeros((3, 3)))
+
+    def frequencies(self, speed):
+        """omega of the falling and the rising mode of the pair, and of the oscillator, rad/s."""
+        half = 0.5 * self.gyroscopic * np.asarray(speed)
+        root = np.sqrt(self.pair**2 + half**2)
+        return np.array([root - half, root + half, np.full_like(half, np.sqrt(self.single**2 - 0.25 * self.damping**2))])
+
+
+def dense_eigenvalues(model: LinearModel, speed) -> np.ndarray:
+    """Eigenvalues of a generalised first-order form of the equations, assembled here without `LinearModel.state_matrix`.
+
+    [C M; I 0] d/dt [q; q'] = [-K 0; 0 I] [q; q'], rows and columns of rates without inertia and of cyclic angles left out.
+    """
+    from scipy.linalg import eigvals
+
+    n, moving = model.size, ~model.first_order
+    damping = model.damping_constant + speed * model.damping_speed + model.damping_inverse_speed / speed
+    left = np.block([[damping, model.mass], [np.eye(n), np.zeros((n, n))]])
+    right = np.block([[-model.stiffness, np.zeros((n, n))], [np.zeros((n, n)), np.eye(n)]])
+    # q' of internal coordinates is no state; a cyclic angle enters nowhere but in its own kinematic row
+    rows = np.r_[np.ones(n, bool), moving & ~model.cyclic]
+    columns = np.r_[~model.cyclic, moving]
+    right[:, n:][:, model.cyclic] -= left[:, :n][:, model.cyclic]
+    return eigvals(right[np.ix_(rows, columns)], left[np.ix_(rows, columns)])
