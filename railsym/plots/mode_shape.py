@@ -136,8 +136,9 @@ def _frame_panel(axes, vehicle, view, window):
 
 def _annotate(panels, mode, view, speed):
     first = panels[0]
+    percent = round(100 * mode.damping_ratio, 1) + 0.0          # no minus sign before a zero
     at = f" at {KMH * speed:.4g} km/h" if speed else ""
-    first.set_title(f"{mode.label}{at}: {mode.frequency_hz:.2f} Hz, damping ratio {100 * mode.damping_ratio:.1f} %",
+    first.set_title(f"{mode.label}{at}: {mode.frequency_hz:.2f} Hz, damping ratio {percent:.1f} %",
                     loc="left", fontsize=11)
     for axes in panels:
         axes.set_ylabel("y, m (to the right)" if view == "above" else "z, m (down)", fontsize=9)

@@ -140,8 +140,7 @@ def _draw_speeds(axes, cases):
     styles = line_styles(tuple(cases))
     for name, result in cases.items():
         conicity = np.atleast_1d(result.conicity)
-        speed = KMH * np.ma.atleast_1d(result.speed)
-        axes.plot(conicity, speed.filled(np.nan), label=name, **styles[name])
+        axes.plot(*_one_mode(conicity, KMH * result.speed, result), label=name, **styles[name])
         _mark_missing(axes, conicity, result, styles[name])
         _mark_ranges(axes, conicity, result, styles[name])
     tidy(axes, _CONICITY, "critical speed, km/h", criterion_text(_ratio(cases)))
@@ -150,33 +149,32 @@ def _draw_speeds(axes, cases):
 def _draw_frequency(axes, cases):
     styles = line_styles(tuple(cases))
     for name, result in cases.items():
-        axes.plot(*_one_mode(np.atleast_1d(result.conicity), result), label=name, **styles[name])
+        axes.plot(*_one_mode(result.conicity, result.frequency_hz, result), label=name, **styles[name])
     tidy(axes, _CONICITY, _FREQUENCY, criterion_text(_ratio(cases)))
 
 
 def _draw_frequency_over_speed(axes, cases):
     styles = line_styles(tuple(cases))
     for name, result in cases.items():
-        axes.plot(*_one_mode(KMH * np.ma.atleast_1d(result.speed), result), label=name, **styles[name])
+        axes.plot(*_one_mode(KMH * result.speed, result.frequency_hz, result), label=name, **styles[name])
     tidy(axes, "critical speed, km/h", _FREQUENCY, criterion_text(_ratio(cases)))
 
 
-def _one_mode(x, result):
-    """x and frequency with a gap where another mode takes over; for plotting.
+def _one_mode(x, y, result):
+    """x and y with a gap where another mode takes over; for plotting.
 
     Hunting's frequency grows with the root of conicity (Klingel): a jump beyond that of a doubled conicity is another mode.
     """
-    frequency = np.ma.atleast_1d(result.frequency_hz).filled(np.nan)
-    x = np.ma.asarray(x, dtype=float).filled(np.nan)
+    x, y, frequency = (np.ma.atleast_1d(np.ma.asarray(v, dtype=float)).filled(np.nan) for v in (x, y, result.frequency_hz))
     ratio = np.maximum(frequency[1:] / frequency[:-1], frequency[:-1] / frequency[1:])
     gaps = np.flatnonzero(ratio > _OTHER_MODE) + 1
-    return np.insert(x, gaps, np.nan), np.insert(frequency, gaps, np.nan)
+    return np.insert(x, gaps, np.nan), np.insert(y, gaps, np.nan)
 
 
 def _draw_change(axes, result, column):
     styles = line_styles(result.configurations)
-    for name, change in zip(result.configurations, result.change[:, column]):
-        axes.plot(result.conicity, change.filled(np.nan), label=name, **styles[name])
+    for (name, case), change in zip(by_configuration(result, column).items(), result.change[:, column]):
+        axes.plot(*_one_mode(result.conicity, change, case), label=name, **styles[name])
     axes.axhline(0.0, color="black", linewidth=0.8, zorder=1)
     tidy(axes, _CONICITY, f"change against {result.configurations[0]}, %", criterion_text(result.damping_ratios[column]))
 

@@ -18,7 +18,7 @@ BLACK, ORANGE, SKY, GREEN, BLUE, VERMILION, PURPLE = (
 GREY, PALE = "#8a8a8a", "#c9c9c9"
 _COLOURS = (BLACK, BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE, GREY)
 _MARKERS = "osD^vPX*"
-_DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)))
+_DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)), (0, (8, 2, 2, 2, 2, 2)))      # five for eight colours: 40 combinations
 
 
 def line_styles(names):
