@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The figures that the project watches, each measured in this run on one core."""
+
+from __future__ import annotations
+
+import itertools
+import tempfile
+from time import perf_counter
+
+import numpy as np
+
+from benchmarks.measure import Figure, cost_of_code, median_time, printed_by
+
+_DERIVE = "from derive.__main__ import generated_files; generated_files()"
+_IMPORT = "import time; start = time.perf_counter(); import railsym; print(time.perf_counter() - start)"
+_USE = "import time; start = time.perf_counter(); import railsym as rs; rs.linearise; rs.critical_speed; print(time.perf_counter() - start)"
+_SAMPLE = 24          # dense eigenproblems that the extrapolation rests on
+
+
+def derivation():
+    """Deriving all kernels, in a process of its own."""
+    cpu, memory = cost_of_code(_DERIVE)
+    return [Figure("derive: CPU time", cpu, "s", 15.0, "python -m derive, everything"),
+            Figure("derive: peak memory", memory, "MB", 300.0, "resident, of that process")]
+
+
+def imports():
+    """``import railsym``, and with the names of stability analysis; the smaller of three processes."""
+    with tempfile.TemporaryDirectory() as elsewhere:
+        bare, used = (min(printed_by(code, elsewhere) for _ in range(3)) for code in (_IMPORT, _USE))
+    return [Figure("import railsym", bare, "s", 0.5), Figure("import railsym, use linearise and critical_speed", used, "s", 0.5)]
+
+
+def linearisation():
+    """State matrix of the 31-body vehicle for a new speed, a new conicity, a new parameter."""
+    import railsym as rs
+
+    vehicle = rs.load_vehicle("pendolino").configured("AS_K")
+    count, contact = itertools.count(), rs.LinearContact(conicity=0.2)
+    matrix = rs.linearise(vehicle, 70.0, contact).A
+
+    def new_contact():
+        return rs.linearise(vehicle, 70.0, rs.LinearContact(conicity=0.1 + 1e-6 * next(count)))
+
+    def new_vehicle():
+        return rs.linearise(vehicle.replace({"anti_yaw_damper.damping": 1e6 + next(count)}), 70.0, contact)
+
+    states = f"31 bodies, {len(matrix)} states"
+    dense = median_time(lambda: np.linalg.eigvals(matrix), 5)
+    times = [median_time(function, 41) for function in (lambda: rs.linearise(vehicle, 70.0, contact), new_contact, new_vehicle)]
+    return [Figure("linearise, same contact", 1e3 * times[0], "ms", 0.5, states),
+            Figure("linearise, new conicity", 1e3 * times[1], "ms", None, states),
+            Figure("linearise, new parameter", 1e3 * times[2], "ms", None, states),
+            Figure("numpy.linalg.eigvals of the same A", 1e3 * dense, "ms"),
+            Figure("eigvals over linearise, same contact", dense / times[0], "-", None, "how little linearising adds")]
+
+
+def stability_figures():
+    """Figures 8 to 10 (8 configurations, 8 conicities, 3 criteria) against dense eigenvalues over the same speeds."""
+    import railsym as rs
+
+    vehicle = rs.load_vehicle("pendolino")
+    rs.critical_speed(vehicle.configured("AS_K"), 0.2)             # imports and first use
+    start = perf_counter()
+    found = rs.stability_map(vehicle)
+    seconds = perf_counter() - start
+    dense = _dense_time(vehicle, found)
+    cases = f"{len(found.configurations)} x {len(found.conicity)} x {len(found.damping_ratios)} cases"
+    return [Figure("figures 8-10 complete", seconds, "s", 10.0, cases),
+            Figure("speeds solved", found.speeds_solved, "-", None, "eigenproblems in the scans and Newton steps"),
+            Figure("dense eigvals over the same speeds", dense * found.speeds_solved, "s", None,
+                   f"extrapolated from {_SAMPLE} measured matrices over configurations, conicities and speeds"),
+            Figure("ratio", dense * found.speeds_solved / seconds, "-", 20.0, "dense over railsym", at_least=True)]
+
+
+def _dense_time(vehicle, found):
+    """Mean time of numpy.linalg.eigvals of a state matrix, over a sample spread over the cases."""
+    import railsym as rs
+
+    cases = list(itertools.product(found.configurations, found.conicity, np.geomspace(10.0, 200.0, 5)))
+    chosen = np.linspace(0, len(cases) - 1, _SAMPLE).round().astype(int)
+    total = 0.0
+    for name, conicity, speed in (cases[k] for k in chosen):
+        matrix = rs.linearise(vehicle.configured(name), speed, rs.LinearContact(conicity=float(conicity))).A
+        start = perf_counter()
+        np.linalg.eigvals(matrix)
+        total += perf_counter() - start
+    return total / _SAMPLE
+
+
+def sensitivities():
+    """Sensitivity of a critical speed to every parameter of the file."""
+    import railsym as rs
+
+    vehicle = rs.load_vehicle("pendolino").configured("AS_K")
+    start = perf_counter()
+    found = rs.sensitivity(vehicle, 0.2)
+    return [Figure("sensitivity to every parameter", perf_counter() - start, "s", None, f"{len(found)} parameters")]
+
+
+GROUPS = {"derive": derivation, "import": imports, "linearise": linearisation, "figures": stability_figures,
+          "sensitivity": sensitivities}
