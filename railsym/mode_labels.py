@@ -44,7 +44,14 @@ class MotionLabels:
         self.owner = np.array(owner)
         self.dof = np.array([model.coordinates[i].rpartition(".")[2] for i in self.moving])
         self.lateral = np.isin(self.dof, LATERAL)
-        self.unit = self._running_units()
+        unit = self._running_units()
+        self.mass = model.mass[self.moving[:, None], self.moving]
+        self.units = {"bogies": self._sorted_units(unit), "wheelsets": self._sorted_units(self.owner)}
+
+    def _sorted_units(self, units):
+        """Unit of each coordinate, and the names of the units of the running gear from the front to the rear."""
+        running = (self.role == BOGIE) | (self.role == WHEELSET)
+        return units, sorted(set(units[running]) - {""}, key=lambda name: -self.bodies[name].x)
 
     def _running_units(self):
         """Name of the bogie that each coordinate of a bogie or wheelset belongs to: the nearest one along the track."""
@@ -55,7 +62,7 @@ class MotionLabels:
     def energy(self, shape):
         """Share of the kinetic energy of each coordinate with inertia; sums to 1."""
         x = shape[self.moving]
-        energy = (x.conj() * (self.model.mass[np.ix_(self.moving, self.moving)] @ x)).real.clip(min=0.0)
+        energy = (x.real * (self.mass @ x.real) + x.imag * (self.mass @ x.imag)).clip(min=0.0)
         return energy / energy.sum() if energy.any() else energy
 
     def lateral_share(self, shape) -> float:
@@ -104,24 +111,24 @@ class MotionLabels:
         moved = energy * running
         if moved[self.lateral].sum() >= 0.5 * moved.sum():
             if share[BOGIE] == 0.0:
-                return "wheelset hunting" + self._which(moved, self.owner, "wheelsets")
+                return "wheelset hunting" + self._which(moved, "wheelsets")
             if moved[(self.role == WHEELSET) & self.lateral].sum() > 0.1 * moved.sum():
-                return "bogie hunting" + self._which(moved, self.unit, "bogies")
-            return f"bogie {_MOTION[self._leading_dof(moved)]}" + self._which(moved, self.unit, "bogies")
+                return "bogie hunting" + self._which(moved, "bogies")
+            return f"bogie {_MOTION[self._leading_dof(moved)]}" + self._which(moved, "bogies")
         role = WHEELSET if share[WHEELSET] > share[BOGIE] else BOGIE
         dof = self._leading_dof(energy * (self.role == role))
         if role == BOGIE:
-            return f"bogie {_MOTION[dof]}" + self._which(moved, self.unit, "bogies")
+            return f"bogie {_MOTION[dof]}" + self._which(moved, "bogies")
         name = "axlebox pitch" if dof == "pitch" else f"wheelset {_MOTION[dof]}"
-        return name + self._which(energy * (self.role == role), self.owner, "wheelsets")
+        return name + self._which(energy * (self.role == role), "wheelsets")
 
     def _leading_dof(self, energy):
         totals = {dof: energy[self.dof == dof].sum() for dof in dict.fromkeys(self.dof)}
         return max(totals, key=totals.get)
 
-    def _which(self, energy, units, plural):
+    def _which(self, energy, plural):
         """", leading" or ", trailing" or the name of one among many, or ", both/all ..." of the units that move."""
-        names = sorted({u for u, r in zip(units, self.role) if u and r in (BOGIE, WHEELSET)}, key=lambda name: -self.bodies[name].x)
+        units, names = self.units[plural]
         if len(names) < 2:
             return ""
         amounts = [energy[units == name].sum() for name in names]

@@ -2,8 +2,9 @@
 """A small model with the slow motions of a large one, and an estimate of what it leaves out.
 
 Galerkin projection on the undamped modes of the elastic structure below a frequency limit, taken with the Maxwell springs
-released. Internal (Maxwell) coordinates and spin angles are kept as they are, so only the inertia of fast motions is lost:
-their flexibility comes back, to first order, through `Reduction.correction`.
+released, and on the static shapes of the faster modes under what the elastic structure left out: Maxwell springs, dampers and
+creep forces (residual attachment modes; Craig 2000, Coupling of substructures for dynamic analyses). Internal (Maxwell)
+coordinates and spin angles are kept as they are.
 """
 
 from __future__ import annotations
@@ -15,6 +16,10 @@ import numpy as np
 from railsym.linear_model import LinearModel
 
 KEEP_ALL = 24          # second-order coordinates: a model this small is not worth reducing
+# rad/s and m/s at which dampers and creep forces are weighed: hunting in the middle of its range
+_FREQUENCY, _SPEED = 2 * np.pi * 6.0, 20.0
+# static shapes are kept that change the square of a frequency like that by more than this share
+_ATTACHED = 0.1
 _DEPENDENT = 1e-8      # share of a unit vector outside the span of the others below which it is dropped
 
 
@@ -95,9 +100,9 @@ def reduce_model(model: LinearModel, frequency_limit: float, extra: np.ndarray |
     if len(moving) <= KEEP_ALL:
         nothing = np.zeros((model.size, 0))
         return Reduction(model, np.eye(model.size), model, nothing, np.zeros(0))
-    square, modes = _elastic_modes(model, moving)
+    square, modes, others = _elastic_modes(model, moving)
     slow = square < (2 * np.pi * frequency_limit) ** 2
-    wanted = [modes[:, slow]]
+    wanted = [modes[:, slow], _attachments(modes[:, slow], modes[:, ~slow], square[~slow], others)]
     translation = model.uniform_translation
     if translation is not None and translation.any():
         wanted.insert(0, translation[moving, None])
@@ -112,19 +117,44 @@ def reduce_model(model: LinearModel, frequency_limit: float, extra: np.ndarray |
     return Reduction(_projected(model, basis, kept_alone), basis, model, dropped, square[~slow])
 
 
+def _attachments(slow, fast, square, others):
+    """Static shapes of the fast modes under the forces that slow motions cause outside the elastic structure.
+
+    Without them the square of a slow frequency is wrong by |H|^2, H = omega_fast^-1 fast^T X slow, with X the stiffness of the
+    other forces at a frequency of interest: so the directions are kept in which |H|^2 is large.
+    """
+    weight = fast / np.sqrt(square)
+    coupling = weight.T @ np.hstack([other @ slow for other in others])
+    size, directions = np.linalg.eigh(coupling @ coupling.T)
+    return weight @ directions[:, size > _ATTACHED * _FREQUENCY**2]
+
+
 def _elastic_modes(model: LinearModel, moving):
-    """omega^2 and mass-normalised modes of the elastic structure, Maxwell springs released, wheels not rolling."""
+    """Elastic structure with Maxwell springs released and wheels not rolling, and the stiffness of all other forces.
+
+    Returns
+    -------
+    square : ndarray, shape (k,)
+        omega^2 of the modes, (rad/s)^2.
+    modes : ndarray, shape (k, k)
+        Mass-normalised.
+    others : list of ndarray, shape (k, k)
+        Maxwell springs, creep stiffness, dampers and creep damping at a frequency and a speed of interest.
+    """
     from scipy.linalg import eigh
 
-    internal = np.flatnonzero(model.first_order)
-    stiffness = model.stiffness[np.ix_(moving, moving)]
+    place, internal = np.ix_(moving, moving), np.flatnonzero(model.first_order)
+    stiffness = model.stiffness[place]
+    others = [_FREQUENCY * model.damping_constant[place], _FREQUENCY / _SPEED * model.damping_inverse_speed[place]]
     if len(internal):
         released = np.linalg.solve(model.stiffness[np.ix_(internal, internal)], model.stiffness[np.ix_(internal, moving)])
-        stiffness = stiffness - model.stiffness[np.ix_(moving, internal)] @ released
+        others.append(model.stiffness[np.ix_(moving, internal)] @ released)
+        stiffness = stiffness - others[-1]
     # creep forces make K unsymmetric; what two opposite entries agree on is the elastic part
-    other = stiffness.T
-    elastic = np.where(stiffness * other > 0, np.sign(stiffness) * np.minimum(np.abs(stiffness), np.abs(other)), 0.0)
-    return eigh(elastic, model.mass[np.ix_(moving, moving)], check_finite=False)
+    mirrored = stiffness.T
+    elastic = np.where(stiffness * mirrored > 0, np.sign(stiffness) * np.minimum(np.abs(stiffness), np.abs(mirrored)), 0.0)
+    others.append(stiffness - elastic)
+    return *eigh(elastic, model.mass[place], check_finite=False), others
 
 
 def _orthonormal(shapes, mass):

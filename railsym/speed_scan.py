@@ -26,10 +26,10 @@ _WATCH = 0.12              # modes within this of the highest damping ratio aske
 _SMOOTH = 0.05             # kink of a path, relative to the eigenvalue, that similar vectors make credible
 _CLEAR = 0.005             # kink so small that the vectors need not be alike: nearly equal modes mix freely
 _NEUTRAL = 1e-9            # |Re lambda| / |lambda| of a mode without damping, after rounding
-# The basis is enriched where dropped modes move a watched eigenvalue by more than this share of itself and by more than its
+# The basis is enriched where dropped modes move a watched eigenvalue by more than this share of itself and by more than half its
 # distance from the nearest criterion: less cannot hide a crossing.
-_REDUCTION_ERROR = 1e-2
-_REDUCTION_MARGIN = 1.0
+_REDUCTION_ERROR = 5e-3
+_REDUCTION_MARGIN = 0.5
 _GRID = np.linspace(0.0, 1.0, 17)
 
 

@@ -23,7 +23,7 @@ FREQUENCY_BAND = (0.3, 20.0)      # Hz, of hunting and of the car body on its su
 # Hz: elastic modes up to here, or 1.25 times the upper end of the band, make the first reduced model. Hunting at 10 Hz is then
 # within 1 % already; a scan that leaves anything open is repeated with twice the limit.
 _BASIS, _LEAST_BASIS, _REPEATS = 1.25, 25.0, 3
-_NEAR = 0.03                      # crossings this near each other, relatively, may swap places when polished
+_NEAR = 0.015                     # crossings this near each other, relatively, may swap places when polished
 _LATERAL = 0.1                    # share of the kinetic energy in y, yaw and roll of a motion that takes part in hunting
 
 
@@ -179,8 +179,11 @@ def is_dissipative(model: LinearModel) -> bool:
 def _is_semidefinite(matrix) -> bool:
     both = 0.5 * (matrix + matrix.T)
     scale = 1.0 / np.sqrt(np.where(both.diagonal() > 0, both.diagonal(), 1.0))
-    scaled = both * (scale[:, None] * scale)
-    return bool(np.linalg.eigvalsh(scaled)[0] > -1e-9)
+    try:
+        np.linalg.cholesky(both * (scale[:, None] * scale) + 1e-9 * np.eye(len(matrix)))
+    except np.linalg.LinAlgError:
+        return False
+    return True
 
 
 @dataclass(eq=False)
