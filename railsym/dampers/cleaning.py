@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From a bench record to its steady cycles on a uniform grid, without offset and drift."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from railsym.dampers import cycles as periodic
+from railsym.dampers import record_checks as checks
+from railsym.dampers.lag import estimate_lag
+from railsym.dampers.record import CleanRecord, Record, RecordError, RecordWarning
+
+_MOST_SAMPLES = 512         # per cycle kept: beyond 256 harmonics there is only noise
+_MOST_HARMONICS = 15        # of the imposed motion
+_ASYMMETRY = 0.004          # of the first harmonic: even harmonics above it (and above noise) belong to an asymmetric damper
+
+
+def clean(record, *, check_units=True):
+    """Clean one test.
+
+    Finds the frequency by a sine fit, resamples whole cycles to a grid of phases, drops transients at the start and the end,
+    takes off offset and drift, and checks for defects. Every finding is in ``messages``; defects also warn.
+
+    Parameters
+    ----------
+    record : Record or CleanRecord
+        A CleanRecord is returned as it is.
+    check_units : bool
+        Refuse what no railway damper gives, such as a unit off by 1000.
+
+    Returns
+    -------
+    CleanRecord
+        Its ``lag`` is 0: one test cannot tell the lag from the damper's own phase; see `clean_all`.
+
+    Raises
+    ------
+    RecordError
+        A record that cannot be used; the message names the test and the reason.
+    """
+    if isinstance(record, CleanRecord):
+        return record
+    if not isinstance(record, Record):
+        raise RecordError(f"a Record is needed, not {type(record).__name__}: railsym.dampers.Record(time, displacement, force)")
+    checks.check_clipping(record)
+    cycles, frequency, start, notes = _whole_cycles(record)
+    kept, departure = periodic.steady_cycles(cycles[:2])
+    dropped, faults = cycles.shape[1] - (kept.stop - kept.start), []
+    if dropped:
+        notes.append(f"{record.label}: {dropped} of {cycles.shape[1]} cycles are transients and were left out")
+    if departure > 0.01:
+        faults.append(f"{record.label}: the cycles kept still differ by {100 * departure:.1f} %: the test is too short for its transient")
+    cycles, drift = _without_trend(cycles[:, kept])
+    if drift > 0.02:
+        notes.append(f"{record.label}: the force drifts by {100 * drift:.1f} % of its amplitude; taken off")
+    # the kept cycles go round, so that they begin where the displacement passes 0
+    cycles = np.roll(cycles.reshape(len(cycles), -1), -start, axis=1).reshape(cycles.shape)
+    faults += _checked(record, frequency, cycles, check_units)
+    return _assembled(record, frequency, cycles, notes, faults)
+
+
+def clean_all(records, *, check_units=True):
+    """Clean several tests of one damper, compare them, and estimate the lag of the force channel over all of them.
+
+    Parameters
+    ----------
+    records : sequence of Record or CleanRecord
+    check_units : bool
+        As for `clean`.
+
+    Returns
+    -------
+    tuple of CleanRecord
+        With ``lag`` and ``lag_deviation``, the same in all.
+
+    Raises
+    ------
+    RecordError
+        No record, or one that cannot be used.
+    """
+    records = (records,) if isinstance(records, (Record, CleanRecord)) else tuple(records)
+    if not records:
+        raise RecordError("there is no test; give at least one Record")
+    cleaned = [clean(record, check_units=check_units) for record in records]
+    checks.compare_sizes(cleaned)
+    lag, deviation = estimate_lag(cleaned)
+    return tuple(replace(one, lag=lag, lag_deviation=deviation) for one in cleaned)
+
+
+def _whole_cycles(record):
+    """Channels as an array (m, cycles, samples_per_cycle), frequency, sample of phase 0, messages."""
+    given = [record.displacement, record.force] + ([record.velocity] if record.velocity is not None else [])
+    step, channels, gap = periodic.uniform(record.time, given)
+    channels = channels[:, periodic.moving_part(channels[0])]
+    duration = step * (channels.shape[1] - 1)
+    frequency, phase = periodic.frequency_of(channels[0], step)
+    checks.check_frequency(record, frequency, step, duration)
+    notes = checks.check_gap(record, gap, frequency)
+    cycles, start, first = periodic.on_phases(channels, step, frequency, phase)
+    if cycles.shape[1] < periodic.FEWEST_CYCLES:
+        raise RecordError(f"{record.label}: has {frequency * duration:.2f} cycles of {frequency:.3g} Hz; at least 3 whole ones are needed, better 10")
+    kept, _ = periodic.steady_cycles(cycles[:2])
+    if kept.stop - kept.start < cycles.shape[1]:
+        # frequency and phase again, without the transient
+        begin, end = (int(first + k / (frequency * step)) for k in (kept.start, kept.stop))
+        frequency, phase = periodic.frequency_of(channels[0, begin:end], step)
+        cycles, start, _ = periodic.on_phases(channels, step, frequency, phase - 2.0 * np.pi * frequency * step * begin)
+    return cycles, frequency, start, notes
+
+
+def _without_trend(cycles):
+    """Channels without the straight line through the means of their cycles, but with their mean; drift of the force.
+
+    Returns
+    -------
+    ndarray (m, cycles, samples_per_cycle)
+    drift : float
+        Over the record, as a part of the force's amplitude.
+    """
+    m, number, count = cycles.shape
+    at = np.arange(number) - 0.5 * (number - 1)
+    slope = cycles.mean(axis=2) @ at / (at @ at)                                  # per cycle
+    samples = (np.arange(number * count) - 0.5 * (number * count - 1)) / count
+    straight = cycles - (slope[:, None] * samples).reshape(cycles.shape)
+    return straight, abs(slope[1]) * number / (0.5 * np.ptp(straight[1].mean(axis=0)) or 1.0)
+
+
+def _checked(record, frequency, cycles, check_units):
+    """Messages of the defects that show in the steady cycles."""
+    displacement, force = _first_harmonic(cycles[0]), _first_harmonic(cycles[1])
+    if check_units:
+        checks.check_size(record, frequency, abs(displacement), abs(force))
+    faults = checks.check_amplitude(record, abs(displacement))
+    faults += checks.check_periodic(record, _scatter(cycles[0]) / (abs(displacement) / np.sqrt(2.0)))
+    stiffness = force / displacement
+    checks.check_energy(record, frequency, np.angle(stiffness), np.pi * stiffness.imag * abs(displacement) ** 2)
+    if len(cycles) > 2:
+        faults += checks.check_velocity(record, frequency, _first_harmonic(cycles[2]) / (2j * np.pi * frequency * displacement))
+    return faults
+
+
+def _assembled(record, frequency, cycles, notes, faults):
+    """The CleanRecord; warns of the faults."""
+    for fault in faults:
+        warnings.warn(fault, RecordWarning, stacklevel=3)
+    noise = _scatter(cycles[1])
+    motion, rate = _imposed_motion(cycles[0], frequency)
+    offset, asymmetric = _force_offset(cycles[1].mean(axis=0), rate, frequency, noise / np.sqrt(cycles.shape[1]))
+    if asymmetric:
+        notes = [*notes, f"{record.label}: the force is not the same in both directions; its offset {offset:.4g} N is that at no damper speed"]
+    force = _thinned(cycles[1] - offset)
+    number, count = force.shape
+    motion, rate = (np.tile(_thinned(one[None])[0], number) for one in (motion, rate))
+    time = np.arange(number * count) / (count * frequency)
+    if noise > 1e-3 * np.std(force):
+        notes = [*notes, f"{record.label}: noise of the force {100 * noise / (np.std(force) or 1.0):.2g} % of its r.m.s. value"]
+    return CleanRecord(time, motion, rate, force.ravel(), frequency, float(abs(_first_harmonic(cycles[0]))), number, count, offset, noise,
+                       name=record.name, messages=(*faults, *notes), record=record)
+
+
+def _first_harmonic(cycles):
+    """Complex amplitude over all cycles."""
+    count = cycles.shape[-1]
+    return complex(cycles.mean(axis=0) @ np.exp(-2j * np.pi * np.arange(count) / count)) * 2.0 / count
+
+
+def _scatter(cycles):
+    """Root mean square of what does not repeat, unbiased."""
+    number = len(cycles)
+    return float(np.sqrt(np.var(cycles, axis=0).mean() * number / (number - 1)))
+
+
+def _imposed_motion(cycles, frequency):
+    """Displacement and velocity of one cycle from the harmonics that stand out of the noise; offset left out."""
+    number, count = cycles.shape
+    spectrum = np.fft.rfft(cycles.mean(axis=0)) * 2.0 / count
+    floor = max(5.0 * _scatter(cycles) * np.sqrt(2.0 / (number * count)), 1e-5 * abs(spectrum[1]))
+    order = np.arange(spectrum.size)
+    keep = (order == 1) | ((order > 1) & (order <= _MOST_HARMONICS) & (np.abs(spectrum) > floor) & (order < count // 2))
+    spectrum = np.where(keep, spectrum, 0.0) * count / 2.0
+    return np.fft.irfft(spectrum, count), np.fft.irfft(spectrum * 2j * np.pi * frequency * order, count)
+
+
+def _force_offset(force, rate, frequency, noise):
+    """Offset of the force channel, and whether the damper is asymmetric.
+
+    A symmetric damper under a sine has odd harmonics only, and the mean of its force is the offset. The mean of an asymmetric
+    one (its even harmonics tell) is its own: there the offset is the force at no speed w of the damper itself, w = v - (dF/dt)/k.
+    The compliance that closes the loop of F over w in the mean, 1/k = int(dF/dt dv) / int((dF/dt)^2), makes F a function of w.
+    """
+    count = force.size
+    spectrum = np.fft.rfft(force) / count
+    amplitude, order = 2.0 * np.abs(spectrum), np.arange(spectrum.size)
+    even = np.sqrt(np.sum(amplitude[2:8:2] ** 2))
+    if even < max(_ASYMMETRY * amplitude[1], 6.0 * noise * np.sqrt(2.0 / count)):
+        return float(force.mean()), False
+    few = np.where(order <= 2 * _MOST_HARMONICS, spectrum, 0.0) * count
+    smooth, slope = np.fft.irfft(few, count), np.fft.irfft(few * 2j * np.pi * frequency * order, count)
+    compliance = max(0.0, float(slope @ rate / (slope @ slope)))
+    speed = rate - compliance * slope
+    crossing = np.flatnonzero(speed * np.roll(speed, -1) < 0.0)
+    following = (crossing + 1) % count
+    part = speed[crossing] / (speed[crossing] - speed[following])
+    at_rest = smooth[crossing] + part * (smooth[following] - smooth[crossing])
+    rising = speed[following] > speed[crossing]
+    return float(0.5 * (at_rest[rising].mean() + at_rest[~rising].mean())), True
+
+
+def _thinned(cycles):
+    """At most 512 samples per cycle, through a low-pass of the spectrum of the whole record."""
+    number, count = cycles.shape
+    if count <= _MOST_SAMPLES:
+        return cycles
+    spectrum = np.fft.rfft(cycles.ravel())[:number * _MOST_SAMPLES // 2 + 1]
+    return np.fft.irfft(spectrum, number * _MOST_SAMPLES).reshape(number, _MOST_SAMPLES) * (_MOST_SAMPLES / count)

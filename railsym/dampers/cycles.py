@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Periodic signals: uniform sampling, frequency by a sine fit, samples on a grid of phases, the steady cycles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+_JITTER = 1e-3          # of a step: below it samples count as uniform
+_GAP = 1.6              # steps: a longer one is a gap
+_STEADY = 0.003         # of the first harmonic: a cycle that differs by less belongs to the steady ones
+FEWEST_CYCLES = 3
+
+
+def uniform(time, channels):
+    """Channels on a uniform grid of times.
+
+    Parameters
+    ----------
+    time : ndarray (n,)
+    channels : list of ndarray (n,)
+
+    Returns
+    -------
+    step : float
+    channels : ndarray (len(channels), m)
+        Unchanged where the samples are uniform, else by a cubic spline.
+    gap : float
+        Length of the longest gap, in the unit of time; 0 without one.
+    """
+    steps = np.diff(time)
+    step = float(np.median(steps))
+    channels = np.array(channels)
+    gap = float(steps.max()) if steps.max() > _GAP * step else 0.0
+    grid = time[0] + step * np.arange(time.size)
+    if not gap and np.abs(time - grid).max() < _JITTER * step * np.sqrt(time.size):
+        return float((time[-1] - time[0]) / (time.size - 1)), channels, gap
+    from scipy.interpolate import CubicSpline
+
+    grid = np.arange(time[0], time[-1], step)
+    return step, CubicSpline(time, channels, axis=1)(grid), gap
+
+
+def moving_part(displacement):
+    """Slice without the bench at rest: from the first to the last sample beyond half of the amplitude, if that leaves out much."""
+    low, high, n = displacement.min(), displacement.max(), displacement.size
+    far = np.flatnonzero(np.abs(displacement - 0.5 * (low + high)) >= 0.25 * (high - low))
+    # a sine leaves out less than a 30th of three cycles
+    begin, end = int(far[0]), int(far[-1]) + 1
+    return slice(begin if begin > 0.05 * n else 0, end if n - end > 0.05 * n else n)
+
+
+def frequency_of(signal, step):
+    """Frequency of the strongest component by the spectrum and a four-parameter sine fit (IEEE Std 1057), with a drift.
+
+    Parameters
+    ----------
+    signal : ndarray (n,)
+    step : float
+        s.
+
+    Returns
+    -------
+    frequency : float
+        Hz; 0 for a signal without motion.
+    phase : float
+        rad, of the sine at the first sample.
+    """
+    n = signal.size
+    level = np.linspace(-1.0, 1.0, n)
+    trend = signal - signal.mean()
+    power = np.abs(np.fft.rfft(trend * np.hanning(n)))
+    peak = int(np.argmax(power[1:])) + 1
+    if not power[peak] > 0.0:
+        return 0.0, 0.0
+    angular = 2.0 * np.pi * (peak + _parabola(power, peak)) / (n * step)
+    time = step * np.arange(n)
+    for _ in range(4):
+        wave = np.exp(1j * angular * time)
+        basis = np.array([wave.real, wave.imag, np.ones(n), level])
+        cosine, sine, *_ = np.linalg.solve(basis @ basis.T, basis @ signal)
+        slope = time * (sine * wave.real - cosine * wave.imag)
+        basis = np.vstack([basis, slope])
+        scale = np.linalg.norm(basis, axis=1)
+        scale[scale == 0.0] = 1.0
+        basis /= scale[:, None]
+        cosine, sine, _, _, change = np.linalg.lstsq(basis @ basis.T, basis @ signal, rcond=None)[0] / scale
+        # half a line of the spectrum at most: beyond it the fit has left its peak
+        angular += float(np.clip(change, -np.pi / (n * step), np.pi / (n * step)))
+    return float(angular / (2.0 * np.pi)), float(np.arctan2(cosine, sine))
+
+
+def _parabola(power, peak):
+    """Place of the maximum between lines of the spectrum, in lines."""
+    if not 0 < peak < power.size - 1 or min(power[peak - 1:peak + 2]) <= 0.0:
+        return 0.0
+    left, middle, right = np.log(power[peak - 1:peak + 2])
+    return float(np.clip(0.5 * (left - right) / (left - 2.0 * middle + right), -0.5, 0.5))
+
+
+def on_phases(channels, step, frequency, phase):
+    """Samples of all whole cycles up to the end of the record.
+
+    Parameters
+    ----------
+    channels : ndarray (m, n)
+        Uniform samples, ``step`` s apart.
+    frequency, phase : float
+        Hz, and phase in rad of the displacement's sine at the first sample.
+
+    Returns
+    -------
+    ndarray (m, cycles, samples_per_cycle)
+        Each cycle begins at the same phase.
+    start : int
+        Sample of the cycle at which the displacement passes 0 upwards.
+    first : float
+        Place of the first sample of the first cycle among the uniform samples.
+    """
+    count = samples_per_cycle(step, frequency)
+    per_step = count * frequency * step                       # new samples per old one, near 1
+    zero = -phase / (2.0 * np.pi) * count / per_step          # old sample at which the sine is 0
+    # up to half a sample beyond the ends, so that ten cycles of samples are ten cycles
+    last = int(np.floor((channels.shape[1] - 1 - zero) * per_step + 0.5))
+    first = int(np.ceil(-zero * per_step - 0.5))
+    cycles = (last - first + 1) // count
+    index = np.arange(last + 1 - cycles * count, last + 1)
+    place = zero + index / per_step
+    found = _lagrange(channels, place).reshape(len(channels), cycles, count)
+    return (found, int(-index[0] % count), float(place[0])) if cycles else (found, 0, 0.0)
+
+
+def samples_per_cycle(step, frequency):
+    """The even number of samples in a cycle that is nearest to the sampling."""
+    return 2 * int(round(0.5 / (frequency * step)))
+
+
+def _lagrange(channels, place):
+    """Cubic interpolation between uniform samples; its error is 0.023 (omega step)^4."""
+    left = np.clip(np.floor(place).astype(int), 1, channels.shape[1] - 3)
+    t = place - left
+    weights = (-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6)
+    return sum(weight * channels[:, left + shift] for shift, weight in zip((-1, 0, 1, 2), weights))
+
+
+def steady_cycles(channels):
+    """First and last of the steady cycles.
+
+    A cycle is steady when the first harmonics of the channels differ from their medians over the last 60 % of the cycles, and
+    its means from the line through theirs, by less than 0.3 % of the first harmonic or three times their scatter.
+
+    Parameters
+    ----------
+    channels : ndarray (m, cycles, samples_per_cycle)
+
+    Returns
+    -------
+    slice
+    departure : float
+        Largest departure left, as a part of the first harmonic.
+    """
+    cycles, count = channels.shape[1:]
+    wave = np.exp(-2j * np.pi * np.arange(count) / count) * (2.0 / count)
+    first, mean, number = channels @ wave, channels.mean(axis=2), np.arange(cycles)
+    late = slice(int(0.4 * cycles), cycles)
+    reference = np.median(first.real[:, late], axis=1) + 1j * np.median(first.imag[:, late], axis=1)
+    line = np.array([np.polyval(np.polyfit(number[late], m[late], 1 if cycles > 5 else 0), number) for m in mean])
+    size = np.abs(reference)
+    departure = np.maximum(np.abs(first - reference[:, None]), np.abs(mean - line)) / np.where(size > 0.0, size, 1.0)[:, None]
+    limit = np.maximum(_STEADY, 3.0 * np.median(departure[:, late], axis=1) / 0.83)
+    bad = (departure > limit[:, None]).any(axis=0)
+    begin = 1 + int(np.flatnonzero(bad[:cycles // 2])[-1]) if bad[:cycles // 2].any() else 0
+    middle = max(begin, cycles // 2)
+    end = middle + int(np.flatnonzero(bad[middle:])[0]) if bad[middle:].any() else cycles
+    if end - begin < FEWEST_CYCLES:                             # then the last ones, whatever they are
+        begin, end = max(0, cycles - FEWEST_CYCLES), cycles
+    return slice(begin, end), float((departure[:, begin:end] / limit[:, None]).max() * _STEADY)
