@@ -8,6 +8,7 @@ the wheelsets, C2/V the creep forces, because creepages are velocities over V. S
 are taken one by one, and only the wheel-rail part is computed anew for another contact.
 """
 
+from dataclasses import replace
 from functools import cached_property
 from weakref import WeakKeyDictionary
 
@@ -52,12 +53,21 @@ class RollingVehicle:
 
     @cached_property
     def _structure(self):
-        """M, K, C0 and C1 of bodies and elements; gyroscopic moments at 1 m/s are C1."""
-        model = self.model
+        """LinearModel of bodies and elements; gyroscopic moments at 1 m/s are C1."""
+        model, topo = self.model, self.model.topology
         rest = model.pencil((0.0, 1.0, 0.0))
         turning = model.pencil((0.0, 1.0, 0.0), u=model.rolling(1.0))
-        return (model.pencil((0.0, 0.0, 1.0)), model.pencil((1.0, 0.0, 0.0), u=model.rolling(1.0)),
-                rest, turning - rest)
+        return LinearModel(
+            coordinates=topo.coordinates,
+            mass=model.pencil((0.0, 0.0, 1.0)),
+            stiffness=model.pencil((1.0, 0.0, 0.0), u=model.rolling(1.0)),
+            damping_constant=rest,
+            damping_speed=turning - rest,
+            damping_inverse_speed=np.zeros_like(rest),
+            first_order=topo.first_order,
+            cyclic=topo.cyclic,
+            vehicle=model.vehicle,
+        )
 
     def _wheel_rail(self, contacts):
         """K and C2 of the wheel-rail contact: creep forces at 1 m/s are C2."""
@@ -72,22 +82,11 @@ class RollingVehicle:
 
     def linear_model(self, contact):
         """Matrices for a contact; what is not given comes from the vehicle file."""
-        vehicle, topo = self.model.vehicle, self.model.topology
-        contact = contact.resolved(vehicle.contact)
-        mass, stiffness, constant, with_speed = self._structure
-        rail_stiffness, with_inverse = self._wheel_rail(self.contacts(contact))
-        return LinearModel(
-            coordinates=topo.coordinates,
-            mass=mass,
-            stiffness=stiffness + rail_stiffness,
-            damping_constant=constant,
-            damping_speed=with_speed,
-            damping_inverse_speed=with_inverse,
-            first_order=topo.first_order,
-            cyclic=topo.cyclic,
-            vehicle=vehicle,
-            contact=contact,
-        )
+        contact = contact.resolved(self.model.vehicle.contact)
+        stiffness, with_inverse = self._wheel_rail(self.contacts(contact))
+        structure = self._structure
+        stiffness += structure.stiffness
+        return replace(structure, stiffness=stiffness, damping_inverse_speed=with_inverse, contact=contact, base=structure)
 
 
 def rolling_vehicle(vehicle):

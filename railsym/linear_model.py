@@ -10,7 +10,7 @@ cyclic: its column in K is zero and it is no state.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -44,6 +44,9 @@ class LinearModel:
         `railsym.symmetry` looks for one in the vehicle.
     translation : ndarray, shape (n,), optional
         Uniform displacement along the track; from the names of the coordinates when not given.
+    base : LinearModel, optional
+        The same vehicle without its contact: same mass and C0. State matrices are then built from those of the base by what
+        the contact changes, which is several times faster.
 
     Raises
     ------
@@ -64,11 +67,14 @@ class LinearModel:
     contact: Any = None
     mirror: tuple[np.ndarray, np.ndarray] | None = None
     translation: np.ndarray | None = None
+    base: LinearModel | None = field(default=None, repr=False)
 
     def __post_init__(self):
         n = len(self.coordinates)
         for name in _MATRICES:
             matrix = getattr(self, name)
+            if matrix is getattr(self.base, name, None):
+                continue  # looked at when the base was made
             if matrix.shape != (n, n):
                 raise ModelError(f"{name} has shape {matrix.shape}; {n} coordinates need ({n}, {n})")
             # a sum is not finite if any entry is not: one pass without a temporary
@@ -76,7 +82,7 @@ class LinearModel:
                 row, column = np.argwhere(~np.isfinite(matrix))[0]
                 raise ModelError(f"{name}[{self.coordinates[row]}, {self.coordinates[column]}] = {matrix[row, column]} "
                                  "is not finite; check the vehicle's parameters and the wheel loads")
-        if self.mass[self.first_order].any():
+        if self.base is None and self.mass[self.first_order].any():
             raise ModelError("first-order coordinates have no inertia, but the mass matrix has entries in their rows")
         if self.stiffness[:, self.cyclic].any():
             raise ModelError("a cyclic coordinate exerts no force, but its column of the stiffness matrix is not zero")
@@ -121,33 +127,32 @@ class LinearModel:
     def state_matrix(self, speed: float) -> np.ndarray:
         """A of x' = A x at a speed in m/s, shape (ns, ns), rows as `states`; a fresh array on every call."""
         _check_speed(speed)
-        if self._calls:
-            constant, index, with_speed, with_inverse_speed = self._state_matrix_parts
-            matrix = constant.copy()
-        else:
-            # most models are asked once: build A in place and keep nothing, since touching new memory costs more than filling it
-            self._calls.append(speed)
-            matrix, index, with_speed, with_inverse_speed = _state_matrix_parts(self)
-        matrix.ravel()[index] += speed * with_speed + with_inverse_speed / speed
+        constant, index, added, with_speed, with_inverse_speed = self._state_matrix_parts
+        matrix = constant.copy()
+        matrix.ravel()[index] += added + speed * with_speed + with_inverse_speed / speed
         return matrix
 
     def state_matrix_slope(self, speed: float) -> np.ndarray:
         """dA/dV at a speed in m/s, shape (ns, ns)."""
         _check_speed(speed)
-        constant, index, with_speed, with_inverse_speed = self._state_matrix_parts
+        constant, index, _, with_speed, with_inverse_speed = self._state_matrix_parts
         matrix = np.zeros_like(constant)
         matrix.ravel()[index] = with_speed - with_inverse_speed / speed**2
         return matrix
 
     @cached_property
-    def _calls(self) -> list:
-        """The first speed that a state matrix was asked for."""
-        return []
+    def _state_matrix_parts(self):
+        """A0, flat places in A, and what is added there: a constant, times V, over V."""
+        constant = self._constant_state_matrix if self.base is None else self.base._constant_state_matrix
+        return constant, *_changing_entries(self, len(constant))
 
     @cached_property
-    def _state_matrix_parts(self):
-        """A0, the flat places where A depends on V, and the values of A1 and A2 there."""
-        return _state_matrix_parts(self)
+    def _constant_state_matrix(self):
+        return _constant_state_matrix(self)
+
+    @cached_property
+    def _inertia(self):
+        return _BlockInverse(self.mass, _state_parts(self).second)
 
     def state_vector(self, shape: np.ndarray, eigenvalue: complex) -> np.ndarray:
         """The state of the motion q = shape exp(lambda t): coordinates, rates, internal coordinates; shape (ns,)."""
@@ -257,8 +262,8 @@ def _check_speed(speed: float) -> None:
         raise ModelError(f"speed {speed} m/s: a finite speed above 0 m/s is needed, because creepages are referred to it")
 
 
-def _state_matrix_parts(model: LinearModel):
-    """Assemble A0 and the entries that change with speed.
+def _constant_state_matrix(model: LinearModel):
+    """A0 of K, C0 and M.
 
     With v = q' of second-order coordinates and internal coordinates s:
     s' = -Css^-1 (Ksv q + Csv v + Kss s) and v' = -Mvv^-1 (Kvv q + Kvs s + Cvv(V) v + Cvs s').
@@ -276,10 +281,9 @@ def _state_matrix_parts(model: LinearModel):
         coupling = model.damping_constant[v[:, None], s]
         if coupling.any():
             matrix[rate] += coupling @ matrix[internal]
-    inverse = _BlockInverse(model.mass, v)
-    inverse.apply(matrix[rate])
+    model._inertia.apply(matrix[rate])
     np.negative(matrix[rate], out=matrix[rate])
-    return matrix, *_changing_entries(model, parts, inverse, n_position, len(matrix))
+    return matrix
 
 
 def _place_rows(target, parts, rows, model, starts):
@@ -292,21 +296,26 @@ def _place_rows(target, parts, rows, model, starts):
                 target[r:r + block.shape[0], start + c:start + c + block.shape[1]] = block
 
 
-def _changing_entries(model, parts, inverse, n_position, size):
-    """Flat places in A where it depends on speed, and the values of A1 and A2 there."""
-    v = parts.second
-    row, column = np.divmod(np.flatnonzero((model.damping_speed != 0) | (model.damping_inverse_speed != 0)), model.size)
-    if model.first_order[row].any() or model.first_order[column].any():
-        raise ModelError("the damping of internal (Maxwell) coordinates depends on speed; state matrices need it constant")
-    columns = np.unique(column)
-    values = []
-    for matrix in (model.damping_speed, model.damping_inverse_speed):
-        part = matrix[v[:, None], columns]
-        inverse.apply(part)
-        values.append(-part)
-    row, column = np.nonzero((values[0] != 0) | (values[1] != 0))
-    index = (n_position + row) * size + n_position + np.searchsorted(v, columns)[column]
-    return index, values[0][row, column], values[1][row, column]
+def _changing_entries(model, size):
+    """Flat places in A, and what contact and speed add there: the contact's -M^-1 K, A1 and A2."""
+    parts, n = _state_parts(model), model.size
+    if model.base is None:
+        added, inertia = np.zeros((n, n)), model._inertia
+    else:
+        added, inertia = model.stiffness - model.base.stiffness, model.base._inertia
+    changes = (added, model.damping_speed, model.damping_inverse_speed)
+    filled = [np.flatnonzero(change.any(axis=0)) for change in changes]
+    if any(model.first_order[columns].any() for columns in filled) or any(c[parts.first].any() for c in changes):
+        raise ModelError("contact or speed change the equation of an internal (Maxwell) coordinate; state matrices need it constant")
+    v, n_position = parts.second, len(parts.position)
+    right = np.concatenate([change[v[:, None], columns] for change, columns in zip(changes, filled, strict=True)], axis=1)
+    inertia.apply(right)
+    place = [np.searchsorted(parts.position, filled[0])] + [n_position + np.searchsorted(v, c) for c in filled[1:]]
+    columns, target = np.unique(np.concatenate(place), return_inverse=True)
+    values = np.zeros((3, len(columns), len(v)))
+    values[np.repeat(np.arange(3), [len(c) for c in filled]), target] = -right.T
+    column, row = np.nonzero(values.any(axis=0))
+    return (n_position + row) * size + columns[column], *values[:, column, row]
 
 
 def _divide_internal(rows, model: LinearModel, parts: _StateParts) -> None:
