@@ -197,7 +197,8 @@ def _force_offset(force, rate, frequency, noise):
     even = np.sqrt(np.sum(amplitude[2:8:2] ** 2))
     if even < max(_ASYMMETRY * amplitude[1], 6.0 * noise * np.sqrt(2.0 / count)):
         return float(force.mean()), False
-    few = np.where(order <= 2 * _MOST_HARMONICS, spectrum, 0.0) * count
+    clear = (order <= 2 * _MOST_HARMONICS) & ((amplitude > 5.0 * noise * np.sqrt(2.0 / count)) | (order == 0))
+    few = np.where(clear, spectrum, 0.0) * count
     smooth, slope = np.fft.irfft(few, count), np.fft.irfft(few * 2j * np.pi * frequency * order, count)
     compliance = max(0.0, float(slope @ rate / (slope @ slope)))
     speed = rate - compliance * slope
