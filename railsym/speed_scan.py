@@ -25,6 +25,8 @@ _SIMILAR = 0.5             # product of two biorthogonalities: 1 for one and the
 _WATCH = 0.12              # modes within this of the highest damping ratio asked for are followed closely
 _SMOOTH = 0.05             # kink of a path, relative to the eigenvalue, that similar vectors make credible
 _CLEAR = 0.005             # kink so small that the vectors need not be alike: nearly equal modes mix freely
+_ATTEMPTS = 3              # modes of like eigenvalue that are tried when Newton's method goes astray
+_SAME = 1e-8               # relative distance of polished crossings that are one: a hundred times what Newton leaves
 _NEUTRAL = 1e-9            # |Re lambda| / |lambda| of a mode without damping, after rounding
 # The basis is enriched where dropped modes move a watched eigenvalue by more than this share of itself and by more than half its
 # distance from the nearest criterion: less cannot hide a crossing.
@@ -97,32 +99,44 @@ class SpeedScan:
     nodes: list = field(default_factory=list)
     warnings: list = field(default_factory=list)
 
-    def polish(self, crossing: Crossing) -> EigenPoint | None:
-        """The crossing on the full matrices; None, with a warning, when there is none within reach."""
+    def polish(self, crossing: Crossing, taken=()) -> EigenPoint | None:
+        """The crossing on the full matrices.
+
+        Parameters
+        ----------
+        crossing : Crossing
+        taken : sequence of EigenPoint
+            Crossings of other modes. Modes of like frequency share their shapes, so that Newton's method may go to the other one.
+
+        Returns
+        -------
+        EigenPoint or None
+            None, with a warning, when there is no crossing within reach.
+        """
+        point = self._polish_from(crossing, *crossing.nearest, crossing.position, crossing.eigenvalue, taken)
+        if point is not None:
+            return point
+        node = self.node(np.exp(crossing.position))
+        for mode in np.argsort(np.abs(node.eigenvalue - crossing.eigenvalue))[:_ATTEMPTS]:
+            step = _step_to(node, mode, crossing.damping_ratio)
+            point = self._polish_from(crossing, node, mode, node.position + step, node.eigenvalue[mode] + step * node.slope[mode], taken)
+            if point is not None:
+                return point
+        self.warnings.append(f"a crossing expected near {np.exp(crossing.position):.4g} m/s, {abs(crossing.eigenvalue) / (2 * np.pi):.3g} "
+                             "Hz was not found on the full model; ask for verify=True")
+        return None
+
+    def _polish_from(self, crossing, node, mode, position, eigenvalue, taken):
+        """Newton's method from the vectors of a mode; None where it strays or meets a crossing that is taken."""
         (first, _), (second, _) = crossing.ends
         margin = 0.2 * (second.position - first.position) + 0.01
-        node, k = crossing.nearest
-        right, left = self.reduction.expand(node.right[:, k]), self.reduction.expand(node.left[:, k])
+        vectors = self.reduction.expand(node.right[:, mode]), self.reduction.expand(node.left[:, mode])
         try:
-            point = polish_crossing(self.model, np.exp(crossing.position), crossing.eigenvalue, right, left, crossing.damping_ratio)
-            if abs(np.log(point.speed) - crossing.position) < margin and abs(point.eigenvalue / crossing.eigenvalue - 1) < 0.1:
-                return point
+            point = polish_crossing(self.model, np.exp(position), eigenvalue, *vectors, crossing.damping_ratio)
         except ConvergenceError:
-            pass
-        return self._polish_halves(crossing, first, second)
-
-    def _polish_halves(self, crossing, first, second):
-        """Look for the crossing again in a narrower interval."""
-        if second.position - first.position > 2 * _SMALLEST_STEP:
-            middle = self.node(np.exp(0.5 * (first.position + second.position)))
-            for pair in ((first, middle), (middle, second)):
-                for found in examine(*pair, match(*pair), self.damping_ratios)[1]:
-                    if (found.damping_ratio, found.direction) == (crossing.damping_ratio, crossing.direction):
-                        if abs(found.eigenvalue / crossing.eigenvalue - 1) < 0.1:
-                            return self.polish(found)
-        self.warnings.append(f"a crossing expected near {np.exp(crossing.position):.4g} m/s, {abs(crossing.eigenvalue) / 6.2832:.3g} Hz "
-                             "was not found on the full model; ask for verify=True")
-        return None
+            return None
+        near = abs(np.log(point.speed) - crossing.position) < margin and abs(point.eigenvalue / crossing.eigenvalue - 1) < 0.1
+        return point if near and not any(is_same(point, other) for other in taken) else None
 
     def polish_start(self, path: int) -> EigenPoint:
         """A mode of the lowest speed on the full matrices."""
@@ -171,9 +185,21 @@ def _oscillations(matrix):
     return real[above] + 1j * imaginary[above], *(v[:, above] + 1j * v[:, above + 1] for v in (right, left)), divergent
 
 
+def is_same(a: EigenPoint, b: EigenPoint) -> bool:
+    """Are two polished crossings one?"""
+    return abs(a.speed / b.speed - 1) < _SAME and abs(a.eigenvalue / b.eigenvalue - 1) < _SAME
+
+
 def excess(eigenvalue, damping_ratio):
     """Re(lambda) + zeta |lambda|, 1/s: positive where the damping ratio is below zeta."""
     return np.real(eigenvalue) + damping_ratio * np.abs(eigenvalue)
+
+
+def _step_to(node, mode, damping_ratio):
+    """Step in log(speed) to a criterion along the tangent of a mode, at most a tenth."""
+    value, slope = node.eigenvalue[mode], node.slope[mode]
+    rate = slope.real + damping_ratio * (value.conjugate() * slope).real / abs(value)
+    return float(np.clip(-excess(value, damping_ratio) / rate, -0.1, 0.1)) if rate else 0.0
 
 
 def is_below(eigenvalue, damping_ratio):
@@ -264,7 +290,7 @@ def match(first: ScanNode, second: ScanNode):
     return i, j, similarity[i, j]
 
 
-def examine(first: ScanNode, second: ScanNode, pairs, damping_ratios, paths=None):
+def examine(first: ScanNode, second: ScanNode, pairs, damping_ratios, paths):
     """Interpolate the watched paths of an interval.
 
     Returns
@@ -295,7 +321,7 @@ def examine(first: ScanNode, second: ScanNode, pairs, damping_ratios, paths=None
         for k, path in zip(*np.nonzero(changes)):
             t = _GRID[k] + (_GRID[k + 1] - _GRID[k]) * g[k, path] / (g[k, path] - g[k + 1, path])
             crossings.append(Crossing(damping_ratio, int(np.sign(g[k + 1, path])), first.position + t * (second.position - first.position),
-                                      complex(_at(coefficients[:, path], t)), -1 if paths is None else int(paths[i[path]]),
+                                      complex(_at(coefficients[:, path], t)), int(paths[i[path]]),
                                       ((first, i[path]), (second, j[path]))))
     return resolved, crossings
 

@@ -16,14 +16,14 @@ import numpy as np
 from railsym.errors import ConvergenceError, ModelError
 from railsym.linear_model import LinearModel
 from railsym.mode_labels import MotionLabels
-from railsym.speed_scan import Crossing, SpeedScan, is_below, scan_speeds
+from railsym.speed_scan import Crossing, SpeedScan, is_below, is_same, scan_speeds
 from railsym.symmetry import Part, split
 
 FREQUENCY_BAND = (0.3, 20.0)      # Hz, of hunting and of the car body on its suspension
 # Hz: elastic modes up to here, or 1.25 times the upper end of the band, make the first reduced model. Hunting at 10 Hz is then
 # within 1 % already; a scan that leaves anything open is repeated with twice the limit.
 _BASIS, _LEAST_BASIS, _REPEATS = 1.25, 25.0, 3
-_NEAR = 0.015                     # crossings this near each other, relatively, may swap places when polished
+_NEAR = 0.01                      # crossings this near each other, relatively, may swap places when polished, at least
 _LATERAL = 0.1                    # share of the kinetic energy in y, yaw and roll of a motion that takes part in hunting
 
 
@@ -273,9 +273,9 @@ class _Search:
     def _polish(self, events):
         for event in events:
             if event.point is None:
-                event.point = event.scan.polish(event.found)
-        self.events = [e for e in self.events if e not in events or e.point is not None]
-        self.events = _without_repeats(self.events)
+                taken = [e.point for e in self.events if e.point is not None and e.scan is event.scan and e.key != event.key]
+                event.point = event.scan.polish(event.found, taken)
+        self.events = _without_repeats([e for e in self.events if e not in events or e.point is not None])
 
     def _transitions(self):
         """Events at which the vehicle becomes unstable or stable, with the unstable modes counted from below."""
@@ -296,13 +296,19 @@ class _Search:
             self._polish(list(self.events))
         while True:
             chosen = self._transitions()
-            open_ = [e for e in self.events if e.point is None and any(abs(e.position - c.position) < _NEAR for c in chosen)]
+            near = self._swapping_distance()
+            open_ = [e for e in self.events if e.point is None and any(abs(e.position - c.position) < near for c in chosen)]
             if not open_:
                 break
             self._polish(open_)
         reported = sorted(self.events, key=lambda e: e.position) if all_modes else chosen
         crossings = tuple(self._crossing(e) for e in reported)
         return self._report(crossings, speed_range)
+
+    def _swapping_distance(self):
+        """Distance in log(speed) within which crossings may swap places when polished, from how far polishing moved some."""
+        moved = [abs(e.found.position - e.position) for e in self.events if e.point is not None]
+        return max(_NEAR, 3.0 * max(moved, default=0.0))
 
     def _crossing(self, event) -> CriticalCrossing:
         point, part = event.point, event.part
@@ -326,11 +332,9 @@ class _Search:
 
 
 def _without_repeats(events):
-    """Drop events that were polished to one and the same crossing."""
+    """Drop events that were polished to one and the same crossing: one path, seen from two intervals."""
     kept = []
     for event in events:
-        if event.point is None or not any(
-                other.point is not None and abs(other.point.speed / event.point.speed - 1) < 1e-8
-                and abs(other.point.eigenvalue / event.point.eigenvalue - 1) < 1e-8 for other in kept):
+        if event.point is None or not any(other.point is not None and is_same(other.point, event.point) for other in kept):
             kept.append(event)
     return kept

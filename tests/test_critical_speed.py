@@ -88,6 +88,28 @@ def test_modes_that_turn_unstable_later_are_listed_on_request():
     assert np.all(np.diff([c.speed for c in many.crossings]) > 0)
 
 
+@pytest.mark.parametrize("step", [0.5, 0.9, 2.0])
+def test_like_modes_of_two_bogies_are_told_apart(step, monkeypatch):
+    """The bogies' modes lie 0.3 to 1 % apart and mix: however coarse the scan, each crossing is found once."""
+    train = Train(conicity=0.25)
+    expected = [c.speed for c in stability(train.model(), all_modes=True)[0].crossings]
+    monkeypatch.setattr("railsym.speed_scan._FIRST_STEP", step)
+    found, = stability(train.model(), all_modes=True)
+    assert [c.speed for c in found.crossings] == pytest.approx(expected, rel=1e-9) and len(expected) == 4
+    alone, = stability(train.model())
+    assert alone.speed == pytest.approx(min(expected), rel=1e-9)
+
+
+def test_newton_can_be_kept_from_a_crossing_that_is_taken():
+    scan = scan_speeds(split(Train().model())[0].model, (0.0,), (40.0, 60.0), 25.0)
+    leading, trailing = scan.crossings
+    points = [scan.polish(leading), scan.polish(trailing)]
+    assert 1e-3 < abs(points[1].speed / points[0].speed - 1) < 1e-2
+    other = scan.polish(leading, [points[0]])
+    assert other is not None and other.speed == pytest.approx(points[1].speed, rel=1e-9)
+    assert scan.polish(leading, points) is None and "was not found" in scan.warnings[-1]
+
+
 # --- dense eigenvalues ------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("name", TRAINS)
