@@ -27,7 +27,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("plots",)
+_SUBMODULES = ("dampers", "plots",)
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 

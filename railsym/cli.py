@@ -8,10 +8,11 @@ import difflib
 import re
 import sys
 
+from railsym.cli_damper import add_damper
 from railsym.cli_values import CommandError, criterion, numbers, quantity
 from railsym.errors import RailsymError
 
-_COMMANDS = ("stability", "modes", "vehicles")
+_COMMANDS = ("stability", "modes", "damper", "vehicles")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -81,6 +82,7 @@ def _parser():
     commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
     _add_stability(commands)
     _add_modes(commands)
+    add_damper(commands).set_defaults(run=_run("cli_damper", "run"))
     listing = commands.add_parser("vehicles", help="list the vehicles that come along, their bodies and configurations")
     listing.add_argument("--json", nargs="?", const="-", metavar="FILE", help="as JSON, to FILE or standard output")
     listing.set_defaults(run=_run("cli_modes", "list_vehicles"))

@@ -46,9 +46,10 @@ def clean(record, *, check_units=True):
     if not isinstance(record, Record):
         raise RecordError(f"a Record is needed, not {type(record).__name__}: railsym.dampers.Record(time, displacement, force)")
     checks.check_clipping(record)
-    cycles, frequency, start, notes = _whole_cycles(record)
+    cycles, frequency, start, faults = _whole_cycles(record)
+    notes = []
     kept, departure = periodic.steady_cycles(cycles[:2])
-    dropped, faults = cycles.shape[1] - (kept.stop - kept.start), []
+    dropped = cycles.shape[1] - (kept.stop - kept.start)
     if dropped:
         notes.append(f"{record.label}: {dropped} of {cycles.shape[1]} cycles are transients and were left out")
     if departure > 0.01:
@@ -91,14 +92,14 @@ def clean_all(records, *, check_units=True):
 
 
 def _whole_cycles(record):
-    """Channels as an array (m, cycles, samples_per_cycle), frequency, sample of phase 0, messages."""
+    """Channels as an array (m, cycles, samples_per_cycle), frequency, sample of phase 0, defects."""
     given = [record.displacement, record.force] + ([record.velocity] if record.velocity is not None else [])
     step, channels, gap = periodic.uniform(record.time, given)
     channels = channels[:, periodic.moving_part(channels[0])]
     duration = step * (channels.shape[1] - 1)
     frequency, phase = periodic.frequency_of(channels[0], step)
     checks.check_frequency(record, frequency, step, duration)
-    notes = checks.check_gap(record, gap, frequency)
+    faults = checks.check_gap(record, gap, frequency)
     cycles, start, first = periodic.on_phases(channels, step, frequency, phase)
     if cycles.shape[1] < periodic.FEWEST_CYCLES:
         raise RecordError(f"{record.label}: has {frequency * duration:.2f} cycles of {frequency:.3g} Hz; at least 3 whole ones are needed, better 10")
@@ -108,7 +109,7 @@ def _whole_cycles(record):
         begin, end = (int(first + k / (frequency * step)) for k in (kept.start, kept.stop))
         frequency, phase = periodic.frequency_of(channels[0, begin:end], step)
         cycles, start, _ = periodic.on_phases(channels, step, frequency, phase - 2.0 * np.pi * frequency * step * begin)
-    return cycles, frequency, start, notes
+    return cycles, frequency, start, faults
 
 
 def _without_trend(cycles):
