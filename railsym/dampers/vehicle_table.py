@@ -90,18 +90,13 @@ def critical_speeds(vehicle, models, group="anti_yaw_damper", conicity=CONICITY,
 
 
 def equivalent(model, amplitude, frequency):
-    """Linear model with the dynamic stiffness of a model at an amplitude (m) and a frequency (Hz).
-
-    From K = F/X of the first harmonic: 1/K = 1/k + 1/(i omega c).
-    """
+    """Linear model with the dynamic stiffness of a model at an amplitude (m) and a frequency (Hz)."""
     from railsym.dampers.models import DamperModel
 
-    stiffness = complex(model.describing_function(amplitude, frequency))
-    omega = 2.0 * np.pi * frequency
-    if model.kind != "maxwell":
-        return DamperModel("viscous", damping=stiffness.imag / omega)
-    compliance = 1.0 / stiffness
-    return DamperModel("maxwell", damping=-1.0 / (omega * compliance.imag), series_stiffness=1.0 / compliance.real)
+    damping, stiffness = model.linearised(amplitude, frequency)
+    if model.kind == "maxwell" and np.isfinite(stiffness):
+        return DamperModel("maxwell", damping=damping, series_stiffness=stiffness)
+    return DamperModel("viscous", damping=damping)
 
 
 def _speeds(vehicle, configuration, conicity):

@@ -114,13 +114,12 @@ def series_stiffness(model, speed):
 
 
 def steady_force(fit, record):
-    """Force of a fit in the last of some cycles of a test, with the lag that the fit found, N (samples_per_cycle,)."""
-    from railsym.dampers.bench import virtual_bench
+    """Force of a fit over one steady cycle of a test's motion, with the lag that the fit found, N (samples_per_cycle,)."""
+    from railsym._core import bench_cycles
 
-    cycles, count = 12, record.samples_per_cycle
-    time = np.arange(cycles * count + 1) / (count * record.frequency)
-    motion, rate = (np.append(np.tile(values[:count], cycles), values[0]) for values in (record.displacement, record.velocity))
-    force = virtual_bench(fit.model, time, motion, rate)[0][(cycles - 1) * count:cycles * count]
+    count = record.samples_per_cycle
+    force = bench_cycles(fit.model.force_law_record(), np.array([1.0 / record.frequency]), record.displacement[None, :count],
+                         record.velocity[None, :count])[0][0]
     lag = float(getattr(fit, "lag", 0.0) or 0.0)
     spectrum = np.fft.rfft(force) * np.exp(-2j * np.pi * record.frequency * lag * np.arange(count // 2 + 1))
     return np.fft.irfft(spectrum, count)

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Identified dampers in the linearised vehicle: tangents about rest, equivalents at an amplitude."""
+
+import numpy as np
+import pytest
+
+import railsym as rs
+from railsym.dampers import DamperModel, put_into
+from railsym.dampers.vehicle_table import critical_speeds, equivalent
+
+CURVED = DamperModel("maxwell", damping_curve=((0.0, 0.01, 0.03), (0.0, 7e3, 1e4)), series_stiffness_curve=((0.0, 0.01, 0.03), (6e6, 5e6, 4.5e6)))
+
+
+def speed_of(path):
+    return float(rs.critical_speed(rs.load_vehicle(path), 0.2).speed)
+
+
+def test_a_curve_counts_in_stability_as_its_tangent_at_rest(tmp_path):
+    damping, stiffness = CURVED.linearised()
+    tangent = DamperModel("maxwell", damping=damping, series_stiffness=stiffness)
+    curved = speed_of(put_into("pendolino", CURVED, tmp_path / "a.toml"))
+    # two assemblies of one linear model: the tolerance is that of the crossing
+    assert curved == pytest.approx(speed_of(put_into("pendolino", tangent, tmp_path / "b.toml")), rel=1e-6)
+    softer = CURVED.replace(damping_curve=((0.0, 0.01, 0.03), (0.0, 2e3, 3e3)))
+    assert abs(speed_of(put_into("pendolino", softer, tmp_path / "c.toml")) / curved - 1.0) > 0.02
+
+
+def test_the_equivalent_of_a_linear_damper_is_itself():
+    linear = DamperModel("maxwell", damping=5e5, series_stiffness=4e6)
+    found = equivalent(linear, 2e-3, 1.5)
+    # the bench integrates: its first harmonic is good to 1e-4
+    assert (found.damping, found.series_stiffness) == pytest.approx((5e5, 4e6), rel=1e-3)
+    assert equivalent(DamperModel("viscous", damping=3e5), 1e-3, 2.0).damping == pytest.approx(3e5, rel=1e-3)
+
+
+def test_table_of_critical_speeds():
+    linear = DamperModel("maxwell", damping=5e5, series_stiffness=4e6)
+    found = critical_speeds("pendolino", {"maxwell": linear}, conicity=(0.2,), amplitudes=(2e-3,))
+    assert found.rows[:2] == ("as in the file", "maxwell, about rest") and found.rows[2].startswith("maxwell, 2 mm at ")
+    assert found.speed[1, 0] == pytest.approx(found.speed[2, 0], rel=1e-3)        # linear: no amplitude in it
+    assert abs(found.speed[0, 0] / found.speed[1, 0] - 1.0) > 0.01
+    assert "maxwell, about rest" in "\n".join(found.lines())
+    assert np.isfinite(found.as_data()["speed"]["as in the file"][0])
