@@ -7,7 +7,8 @@ enum {
 	RS_NO_MEMORY = 1,
 	RS_BAD_INDEX = 2,
 	RS_BAD_SIZE = 3,
-	RS_NOT_FINITE = 4
+	RS_NOT_FINITE = 4,
+	RS_NOT_CONVERGED = 5
 };
 
 enum {
@@ -67,3 +68,8 @@ int rs_model_set_input(rs_model *model, int kernel, int slot, const double *valu
 int rs_model_residual(rs_model *model, const double *q, const double *u, const double *a, double *r);
 int rs_model_pencil(rs_model *model, const double *q, const double *u, const double *a,
                     const double *seed, double *r, double *S);
+
+int rs_bench_run(const rs_law *law, int n, const double *time, const double *e, const double *v, int substeps,
+                 double s0, double *f, double *s, int *failed);
+int rs_bench_cycles(const rs_law *law, int tests, int n, const double *period, const double *e, const double *v,
+                    int substeps, double *f, double *s, int *failed);

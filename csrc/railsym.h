@@ -46,6 +46,24 @@
  *   Status    RS_OK, RS_NOT_FINITE (r has a NaN or infinity; r and S are as computed)
  *   Notes     No allocation. A model is used by one thread at a time: its lanes are its
  *             work space. Same machine, same input: same bytes.
+ *
+ * rs_bench_run         one element law under imposed motion, from a given state
+ *   Given     law      element law; a Maxwell law has the state s, others none
+ *             n        samples, >= 1
+ *             time     n, s, increasing
+ *             e v      n, elongation (m) and its rate (m/s)
+ *             substeps TR-BDF2 steps between two samples, >= 1; e cubic, v straight between
+ *             s0       m, elongation of the Maxwell damper at the start
+ *   Returned  f s      n, force (N, positive pulls the ends together), state (m)
+ *             failed   number of the sample that failed, n when none did
+ *   Status    RS_OK, RS_NOT_FINITE, RS_NOT_CONVERGED (or a force that does not grow with speed)
+ *   Notes     No allocation. Samples before the failed one are as computed.
+ * rs_bench_cycles      the periodic motion of one law in several tests
+ *   Given     tests, n tests, points a cycle; period: tests, s
+ *             e v      tests x n, one cycle each
+ *             s        tests x n; the first of each row is the guess
+ *   Returned  f s      tests x n; failed: number of the test, tests when none
+ *   Status    as rs_bench_run; RS_NOT_CONVERGED also for no periodic motion in 200 cycles
  */
 #ifndef RAILSYM_H
 #define RAILSYM_H

@@ -14,6 +14,7 @@ _MEANING = {
     lib.RS_BAD_INDEX: "an index is outside its range",
     lib.RS_BAD_SIZE: "a size is not positive, or force laws are missing",
     lib.RS_NOT_FINITE: "the residual is not finite",
+    lib.RS_NOT_CONVERGED: "an iteration did not converge, or the force does not grow with speed",
 }
 
 LAWS = {
@@ -255,3 +256,37 @@ class Assembly:
         _check(lib.rs_model_pencil(self._model, *map(_doubles, state), _doubles(_vector(seed, 3, "seed")),
                                    _doubles(r), _doubles(matrix)), "pencil")
         return matrix
+
+
+def bench_run(law, time, elongation, rate, substeps=1, start=0.0):
+    """Force (N) and damper elongation (m) of one law under imposed motion, arrays (n,) in SI.
+
+    Raises
+    ------
+    CoreError
+        With the time of the step that failed.
+    """
+    n = len(time)
+    given = [_vector(part, n, "bench") for part in (time, elongation, rate)]
+    force, state, failed = np.zeros(n), np.zeros(n), ffi.new("int *")
+    laws = Laws([law])
+    status = lib.rs_bench_run(laws.array, n, *map(_doubles, given), substeps, start, _doubles(force),
+                              _doubles(state), failed)
+    _check(status, f"virtual bench at t = {given[0][min(failed[0], n - 1)]:.6g} s")
+    return force, state
+
+
+def bench_cycles(law, period, elongation, rate, substeps=1, state=None):
+    """Periodic force and damper elongation, arrays (tests, n), of one law; ``period`` (tests,) in s.
+
+    ``state`` (tests, n) is a guess and is overwritten.
+    """
+    elongation = np.ascontiguousarray(elongation, dtype=float)
+    tests, n = elongation.shape
+    given = [_vector(part, size, "bench") for part, size in ((period, tests), (elongation, tests * n), (rate, tests * n))]
+    force, failed = np.empty((tests, n)), ffi.new("int *")
+    state = np.zeros((tests, n)) if state is None else state
+    laws = Laws([law])
+    status = lib.rs_bench_cycles(laws.array, tests, n, *map(_doubles, given), substeps, _doubles(force), _doubles(state), failed)
+    _check(status, f"virtual bench, test number {failed[0]}")
+    return force, state
