@@ -10,6 +10,7 @@ import json
 import platform
 import sys
 from dataclasses import asdict
+from importlib.util import find_spec
 from pathlib import Path
 
 # the checkout's railsym/ has no compiled library: find the installed one first
@@ -28,6 +29,8 @@ def main(arguments=None):
     unknown = [name for name in options.group if name not in GROUPS]
     if unknown:
         parser.error(f"no group {unknown[0]!r}; there are {', '.join(GROUPS)}")
+    if find_spec("railsym._railsym") is None:
+        parser.error("railsym is not installed in this Python: pip install . first")
     figures = []
     for name in options.group or GROUPS:
         for figure in GROUPS[name]():

@@ -129,7 +129,8 @@ def _cell(name, result, k, notes):
     text = f"{KMH * result.speed[k]:.0f} ({result.frequency_hz[k]:.1f})"
     if len(result.crossings[k]) == 1:
         return text
-    steps = ", ".join(f"{'unstable' if c.direction > 0 else 'stable'} from {KMH * c.speed:.0f}" for c in result.crossings[k])
+    worse, better = ("below", "above") if result.damping_ratio else ("unstable", "stable")
+    steps = ", ".join(f"{worse if c.direction > 0 else better} from {KMH * c.speed:.0f}" for c in result.crossings[k])
     notes.setdefault((f" * {case}", f"{steps} km/h"), []).append(conicity)
     return text + "*"
 

@@ -4,11 +4,14 @@
 import json
 import subprocess
 import sys
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import railsym as rs
 from railsym.cli import main
+from railsym.cli_stability import report
 from railsym.vehicle import SHIPPED
 
 BOGIE = ["stability", "bogie", "--conicity", "0.1,0.3"]
@@ -64,6 +67,17 @@ def test_no_critical_speed_is_a_dash_with_its_reason(capsys):
 def test_already_unstable_says_so(capsys):
     status, out, _ = run(capsys, *BOGIE, "--criterion", "real_part", "--speed-range", "800:850km/h")
     assert status == 0 and "--" in out and "already unstable at the lowest speed" in out
+
+
+def test_several_crossings_are_told():
+    """Beyond the criterion, back, and beyond again: a star and all the speeds."""
+    steps = tuple(SimpleNamespace(speed=v, direction=d) for v, d in ((20.0, 1), (30.0, -1), (50.0, 1)))
+    result = SimpleNamespace(conicity=[0.1], speed=np.ma.array([20.0]), frequency_hz=np.ma.array([0.7]), crossings=(steps,),
+                             message=("",), damping_ratio=0.1, speed_range=(5.0, 250.0))
+    found = SimpleNamespace(configurations=("made_up",), results=((result,),), damping_ratios=(0.1,), conicity=np.array([0.1]))
+    text = report(SimpleNamespace(name="made", description="up"), found)
+    assert "72 (0.7)*" in text
+    assert "* made_up, damping ratio = 10 %, conicity 0.1: below from 72, above from 108, below from 180 km/h" in text
 
 
 def test_vehicle_without_configurations(capsys):

@@ -135,7 +135,9 @@ def test_a_range_that_ends_again_is_a_bar():
     bars = [line.get_xydata() for line in panel.get_lines() if line.get_linewidth() == 5.0]
     assert len(bars) == 1
     np.testing.assert_allclose(bars[0], [[0.1, 144.0], [0.1, 216.0]])
-    assert "ends again" in text_of(panel.figure)
+    again = [line.get_xydata().tolist() for line in panel.get_lines() if line.get_markerfacecolor() == "white"]
+    np.testing.assert_allclose(again, [[[0.1, 360.0]]])
+    assert "again from the open mark" in text_of(panel.figure)
 
 
 def test_a_jump_of_frequency_is_a_gap():

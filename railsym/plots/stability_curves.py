@@ -211,12 +211,15 @@ def _mark_missing(axes, conicity, result, style):
 
 
 def _mark_ranges(axes, conicity, result, style):
-    """A bar over each unstable range of speeds that ends again."""
+    """A bar over each range of speeds beyond the criterion that ends again, an open mark where the next one begins."""
     for at, crossings in zip(conicity, result.crossings):
         start = None
-        for crossing in crossings:
+        for number, crossing in enumerate(crossings):
             if crossing.direction > 0 and start is None:
                 start = crossing.speed
+                if number:
+                    axes.plot(at, KMH * start, color=style["color"], marker=style["marker"], markersize=5, markerfacecolor="white",
+                              linestyle="none", zorder=4)
             elif crossing.direction < 0:
                 low = KMH * (result.speed_range[0] if start is None else start)
                 axes.plot([at, at], [low, KMH * crossing.speed], color=style["color"], linewidth=5.0, alpha=0.3,
@@ -234,7 +237,7 @@ def _notes(results):
     if not all(always_stable(m) for m in missing):
         notes.append(f"▽ at the lower edge: beyond the criterion already at {low:.0f} km/h")
     if any(c.direction < 0 for r in results for crossings in r.crossings for c in crossings):
-        notes.append("broad bar: range of speeds beyond the criterion that ends again")
+        notes.append("broad bar: beyond the criterion up to its end, and again from the open mark")
     return "     ".join(notes)
 
 
