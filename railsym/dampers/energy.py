@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The energy method: damping from the energy dissipated, stiffness from the energy stored.
+
+A Maxwell damper, F = D(w) and e = s + j(|v|) F with w = ds/dt and j = 1/k, has under a cycle
+
+    oint F de = oint D(w) w dt          dissipated in the damper
+    e - int R(F) dt = j(|v|) F          elongation stored in the spring, R the inverse of D
+
+The second is linear in j and R. Both are sums of hat functions; the lag of the force channel, which only tests of different
+frequency can tell, is where the misfit of the second is least. With j known, the speed w of the damper alone is known
+and D follows from F = D(w). For a sine and constants this is Re(1/K) = 1/k and Im(1/K) = -1/(omega c).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+LARGEST_LAG = 0.02  # s, either way
+_RESISTANCES = 9    # hats of R over a half of the force
+
+
+@dataclass(frozen=True, eq=False)
+class Loops:
+    """One mean cycle of every test, on one grid of phases.
+
+    Attributes
+    ----------
+    angular : ndarray (tests,)
+        rad/s.
+    displacement, velocity, force : ndarray (tests, points)
+        m, m/s, N; the force without its mean.
+    harmonics : ndarray of complex, shape (tests, orders)
+        Of the force, order 1 first, N.
+    kept : ndarray of bool, shape (tests, orders)
+        Orders that the sampling can tell.
+    scale : ndarray (tests,)
+        Root mean square of the force, N.
+    noise : ndarray (tests,)
+        Root mean square of the force that differs from cycle to cycle, N.
+    samples : ndarray (tests,)
+        Number of samples behind each mean cycle.
+    """
+
+    angular: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    force: np.ndarray
+    harmonics: np.ndarray
+    kept: np.ndarray
+    scale: np.ndarray
+    noise: np.ndarray
+    samples: np.ndarray
+
+    @property
+    def period(self):
+        """s, shape (tests,)."""
+        return 2.0 * np.pi / self.angular
+
+    def shifted(self, lag):
+        """The same loops with the force ``lag`` (s) earlier."""
+        order = 1 + np.arange(self.harmonics.shape[1])
+        turned = self.harmonics * np.exp(1j * order * self.angular[:, None] * lag)
+        return replace(self, force=synthesis(turned * self._clear, self.force.shape[1]), harmonics=turned)
+
+    @property
+    def _clear(self):
+        """Harmonics that stand out of the noise; the others would only make the damper's speed noisy."""
+        return np.abs(self.harmonics) > 4.0 * (self.noise * np.sqrt(2.0 / self.samples))[:, None]
+
+
+def synthesis(harmonics, points):
+    """Signal (tests, points) of harmonics (tests, orders), order 1 first."""
+    spectrum = np.zeros((len(harmonics), points // 2 + 1), dtype=complex)
+    spectrum[:, 1:1 + harmonics.shape[1]] = 0.5 * points * harmonics
+    return np.fft.irfft(spectrum, points, axis=1)
+
+
+def loops_of(cleaned, points=256, orders=31):
+    """Loops of cleaned records.
+
+    Parameters
+    ----------
+    cleaned : sequence of CleanRecord
+    """
+    count = len(cleaned)
+    angular = 2.0 * np.pi * np.array([one.frequency for one in cleaned])
+    force, motion = np.zeros((count, orders), dtype=complex), np.zeros((count, orders), dtype=complex)
+    kept = np.zeros((count, orders), dtype=bool)
+    for k, one in enumerate(cleaned):
+        _, e, _, f = one.mean_cycle
+        top = min(orders, (len(e) - 1) // 2)
+        motion[k, :top] = 2.0 * np.fft.rfft(e)[1:1 + top] / len(e)
+        force[k, :top] = 2.0 * np.fft.rfft(f)[1:1 + top] / len(f)
+        kept[k, :top] = True
+    rate = 1j * (1 + np.arange(orders)) * angular[:, None] * motion
+    scale = np.sqrt(0.5 * np.sum(np.abs(force) ** 2, axis=1))
+    noise = np.array([one.noise for one in cleaned])
+    samples = np.array([one.cycles * one.samples_per_cycle for one in cleaned])
+    made = Loops(angular, synthesis(motion, points), synthesis(rate, points), synthesis(force, points), force, kept, scale, noise, samples)
+    return made.shifted(0.0)
+
+
+def hats(x, nodes):
+    """Hat functions (len(nodes), ...) of ``nodes`` at ``x``; the last two go straight on beyond the end."""
+    piece = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, len(nodes) - 2)
+    t = (x - nodes[piece]) / (nodes[piece + 1] - nodes[piece])
+    out = np.zeros((len(nodes), *np.shape(x)))
+    flat, at = out.reshape(len(nodes), -1), np.arange(np.size(x))
+    flat[piece.ravel(), at] = 1.0 - t.ravel()
+    flat[piece.ravel() + 1, at] += t.ravel()
+    return out
+
+
+def integral(signal, period):
+    """Integral (m) over time of a rate (tests, points) without its mean."""
+    spectrum = np.fft.rfft(signal, axis=-1)
+    order = np.arange(spectrum.shape[-1])
+    order[0] = 1
+    spectrum = spectrum / (2j * np.pi * order / np.asarray(period)[..., None])
+    spectrum[..., 0] = 0.0
+    return np.fft.irfft(spectrum, signal.shape[-1], axis=-1)
+
+
+def stored(loops, stiffness_nodes=None, symmetric=True):
+    """Compliance j (nodes,) and relative misfit of the elongation, for loops without lag.
+
+    ``stiffness_nodes`` are the speeds (m/s) of j's hats; None for a constant.
+    """
+    top = np.abs(loops.force).max()
+    grid = top * np.linspace(0.0, 1.0, _RESISTANCES + 1)[1:] ** 1.5
+    nodes = np.concatenate([-grid[::-1], [0.0], grid])
+    bases = hats(loops.force, nodes)
+    if symmetric:  # odd: a hat less its mirror image
+        bases = bases[_RESISTANCES + 1:] - bases[_RESISTANCES - 1::-1]
+    weight = 1.0 / np.sqrt(np.mean(loops.displacement**2, axis=1))[:, None]
+    columns = [integral(basis, loops.period) for basis in bases]
+    if stiffness_nodes is None:
+        spring = [loops.force]
+    else:
+        spring = [part * loops.force for part in hats(np.abs(loops.velocity), stiffness_nodes)]
+        spring = [part - part.mean(axis=1, keepdims=True) for part in spring]
+    table = np.array([(part * weight)[:, ::4].ravel() for part in (*spring, *columns)])
+    wanted = (loops.displacement * weight)[:, ::4].ravel()
+    size = np.sqrt(np.sum(table**2, axis=1)) + 1e-300
+    table = table / size[:, None]
+    normal = table @ table.T + 1e-10 * np.eye(len(table))
+    found = np.linalg.solve(normal, table @ wanted)
+    misfit = np.sqrt(np.mean((found @ table - wanted) ** 2))
+    return (found / size)[:len(spring)], float(misfit)
+
+
+def lag_of(loops, symmetric=True, stiffness_nodes=None):
+    """Lag (s) of the force, where the misfit of the stored elongation is least, and that misfit."""
+    grid = np.linspace(-LARGEST_LAG, LARGEST_LAG, 21)
+    misfit = [stored(loops.shifted(lag), stiffness_nodes, symmetric) for lag in grid]
+    # A compliance below zero is no spring: such a lag is out of question.
+    value = [m if np.sum(j) > 0.0 else np.inf for j, m in misfit]
+    from scipy.optimize import minimize_scalar
+
+    k = int(np.argmin(value))
+    if not np.isfinite(value[k]):
+        return 0.0, stored(loops, stiffness_nodes, symmetric)[1]
+    lo, hi = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
+    best = minimize_scalar(lambda lag: stored(loops.shifted(lag), stiffness_nodes, symmetric)[1], bounds=(lo, hi), method="bounded",
+                           options={"xatol": 2e-6, "maxiter": 25})
+    return float(best.x), float(best.fun)
+
+
+def damper_speed(loops, compliance, stiffness_nodes=None):
+    """Speed (m/s) of the damper alone: v - d(j F)/dt, shape (tests, points)."""
+    j = compliance[0] if stiffness_nodes is None else np.tensordot(compliance, hats(np.abs(loops.velocity), stiffness_nodes), 1)
+    spectrum = np.fft.rfft(j * loops.force, axis=1)
+    order = np.arange(spectrum.shape[1])
+    spectrum *= 1j * order * loops.angular[:, None]
+    spectrum[:, 41:] = 0.0  # noise of no use, multiplied by its order
+    return loops.velocity - np.fft.irfft(spectrum, loops.force.shape[1], axis=1)
+
+
+def dissipated(loops, speed):
+    """Damping c (N s/m) by the energy balance over all tests, each relative to its own dissipation."""
+    taken = np.mean(loops.force * loops.velocity, axis=1)
+    need = np.mean(speed**2, axis=1)
+    return float(np.sum(taken * need / loops.scale**2) / np.sum(need**2 / loops.scale**2))
+
+
+def force_curve(loops, speed, nodes):
+    """Rising force (N) at ``nodes`` (m/s, 0 among them with no force) by least squares of F = D(w); each test has its mean."""
+    from scipy.optimize import nnls
+
+    zero = int(np.argmin(np.abs(nodes)))
+    above = [np.clip(speed, nodes[k], nodes[k + 1]) - nodes[k] for k in range(zero, len(nodes) - 1)]
+    below = [np.clip(speed, nodes[k], nodes[k + 1]) - nodes[k + 1] for k in range(zero)]
+    if zero == 0:  # odd
+        above = [part - np.clip(-speed, nodes[k], nodes[k + 1]) + nodes[k] for k, part in enumerate(above)]
+    bases = np.array([(part - part.mean(axis=1, keepdims=True)) / loops.scale[:, None] for part in (*below, *above)])
+    table = bases.reshape(len(bases), -1).T
+    wanted = (loops.force / loops.scale[:, None]).ravel()
+    size = np.sqrt(np.sum(table**2, axis=0)) + 1e-300
+    table = table / size
+    root = np.linalg.cholesky(table.T @ table + 1e-9 * np.eye(len(bases))).T
+    slopes = nnls(root, np.linalg.solve(root.T, table.T @ wanted))[0] / size
+    rise = slopes * np.diff(nodes)
+    force = np.concatenate([[0.0], np.cumsum(rise)])
+    return force - force[zero]

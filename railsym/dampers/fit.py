@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Identify a damper model from bench tests: energy method, and least squares on the loops."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+
+from railsym import _core
+from railsym.dampers import energy
+from railsym.dampers.models import DamperModel
+from railsym.dampers.parametrisation import Parametrisation, damping_nodes, stiffness_nodes
+from railsym.dampers.uncertainty import Identifiability, covariance, identifiability, intervals
+from railsym.errors import ModelError
+
+MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
+METHODS = ("energy", "least_squares")
+_DIFFERENT_FREQUENCIES = 1.2  # ratio that tells the lag
+_GOOD = 1e-3                  # relative misfit below which a constant is enough
+_EVEN = 5e-3                  # even harmonics above this part of the force: not symmetric
+
+
+@dataclass(frozen=True)
+class TestError:
+    """Errors of a fit in one test: loop (r.m.s. force error over r.m.s. force), energy and peak force (relative, signed), s."""
+
+    name: str
+    frequency: float
+    amplitude: float
+    loop_error: float
+    energy_error: float
+    peak_error: float
+    computing_time: float
+    __test__ = False
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """An identified damper.
+
+    Attributes
+    ----------
+    model : DamperModel
+    method : str
+    damping, series_stiffness : float
+        N s/m and N/m (None for viscous): constants, or of a curve the equivalent constants over all tests by the energy method.
+    confidence : dict
+        Name -> 95 % interval (low, high), SI. Empty for the energy method.
+    identifiability : Identifiability or None
+    tests : tuple of TestError
+    lag : float
+        s, of the force channel behind the displacement channel (mean over tests if each has its own).
+    message : str
+    seconds : float
+    """
+
+    model: DamperModel
+    method: str
+    damping: float
+    series_stiffness: float | None
+    confidence: dict
+    identifiability: Identifiability | None
+    tests: tuple[TestError, ...]
+    lag: float
+    message: str
+    seconds: float
+    records: tuple = field(default=(), repr=False)
+
+    @property
+    def damping_curve(self):
+        """(speed, force) or None."""
+        return self.model.damping_curve
+
+    @property
+    def series_stiffness_curve(self):
+        """(speed, stiffness) or None."""
+        return self.model.series_stiffness_curve
+
+    def to_toml(self, path=None, name="anti_yaw_damper"):
+        """Vehicle-file lines of the model; written to ``path`` if given."""
+        from railsym.dampers.toml_output import damper_toml
+
+        return damper_toml(self.model, path, name)
+
+    def plot(self):
+        """Force against speed, stiffness against speed, and loops."""
+        from railsym.plots.dampers import plot_damper
+
+        return plot_damper({"maxwell_nonlinear" if self.series_stiffness_curve else self.model.kind: self}, self.records)
+
+
+def identify(records, model="maxwell", method="least_squares", bounds=None, progress=False, *, damping="auto", symmetric="auto",
+             lag="auto"):
+    """Identify a damper model from sinusoidal bench tests.
+
+    Parameters
+    ----------
+    records : sequence of Record or CleanRecord
+    model : str
+        "viscous", "maxwell" or "maxwell_nonlinear" (series stiffness a monotone function of speed).
+    method : str
+        "energy", or "least_squares" started from it.
+    bounds : dict, optional
+        "damping", "series_stiffness", "lag" -> (low, high), SI; for constants.
+    damping : str
+        "constant", "curve", or "auto": a curve where a constant leaves more than noise.
+    symmetric : bool or "auto"
+        Whether the damping curve is odd; "auto" looks at the even harmonics of the force.
+    lag : float or "auto"
+        s; "auto" estimates one lag over all tests if they differ enough in frequency.
+
+    Returns
+    -------
+    Fit
+
+    Raises
+    ------
+    ModelError
+        An unknown model or method, or no records.
+    """
+    started = perf_counter()
+    _check("model", model, MODELS), _check("method", method, METHODS), _check("damping", damping, ("auto", "constant", "curve"))
+    cleaned = _cleaned(records)
+    loops = energy.loops_of(cleaned)
+    odd = _is_odd(loops) if symmetric == "auto" else bool(symmetric)
+    free_lag = lag == "auto" and loops.angular.max() > _DIFFERENT_FREQUENCIES * loops.angular.min()
+    fixed = 0.0 if lag == "auto" else float(lag)
+    tau = energy.lag_of(loops, odd)[0] if free_lag else fixed
+    shapes = {"constant": (False,), "curve": (True,), "auto": (False, True)}[damping]
+    best = None
+    for curve in shapes:
+        found = _start(loops, model, curve, odd, tau, int(free_lag))
+        if method == "least_squares":
+            found = _least_squares(loops, *found[:2], fixed, bounds, progress)
+        found = (*found[:2], _misfit(loops, *found[:2], fixed))
+        if best is None or _norm(found[2]) < 0.8 * _norm(best[2]):
+            best = found
+        if _norm(best[2]) < np.hypot(_GOOD, 2.0 * _floor(loops)):
+            break
+    return _result(cleaned, loops, best, fixed, model, method, bounds, free_lag or lag != "auto", started)
+
+
+def _check(what, value, allowed):
+    if value not in allowed:
+        raise ModelError(f"{what} {value!r} does not exist; there are {', '.join(allowed)}")
+
+
+def _cleaned(records):
+    from railsym.dampers.cleaning import clean_all
+    from railsym.dampers.record import Record
+
+    records = [records] if isinstance(records, Record) or hasattr(records, "mean_cycle") else list(records)
+    if not records:
+        raise ModelError("identify: no records were given; at least one test is needed")
+    return clean_all(records) if any(isinstance(one, Record) for one in records) else records
+
+
+def _is_odd(loops):
+    even = np.linalg.norm(loops.harmonics[:, 1::2], axis=1) / np.linalg.norm(loops.harmonics, axis=1)
+    return bool(np.median(even) < _EVEN + 3.0 * _floor(loops))
+
+
+def _floor(loops):
+    """Relative misfit that noise leaves in the harmonics."""
+    return float(np.sqrt(np.mean((loops.noise / loops.scale) ** 2 * 2.0 * loops.kept.sum(axis=1) / loops.samples)))
+
+
+def _norm(misfit):
+    return float(np.sqrt(misfit @ misfit))
+
+
+def _start(loops, model, curve, odd, tau, lags):
+    """Parametrisation and vector by the energy method."""
+    shifted = loops.shifted(tau)
+    kind = "viscous" if model == "viscous" else "maxwell"
+    nodes = stiffness_nodes(loops.velocity) if model == "maxwell_nonlinear" else None
+    speed, stiffness, rising = loops.velocity, (), True
+    if kind == "maxwell":
+        compliance = np.maximum(energy.stored(shifted, nodes, odd)[0], 1e-10)
+        constant = max(float(energy.stored(shifted, None, odd)[0][0]), 1e-10)
+        rising = bool(compliance[-1] <= compliance[0])
+        ordered = np.minimum.accumulate if rising else np.maximum.accumulate
+        compliance = ordered(np.clip(compliance, 0.1 * constant, 10.0 * constant))
+        stiffness = 1.0 / compliance
+        speed = energy.damper_speed(shifted, compliance, nodes)
+    if curve:
+        at = damping_nodes(speed, odd)
+        value = energy.force_curve(shifted, speed, at)
+    else:
+        at, value = None, energy.dissipated(shifted, speed)
+    made = Parametrisation(kind, at, nodes, float(np.abs(loops.force).max()), rising, lags)
+    return made, made.vector(max(value, 1.0) if at is None else value, stiffness, tau)
+
+
+def _misfit(loops, made, x, fixed, state=None):
+    """Harmonics 1.. of model less measured, relative to the r.m.s. force; squares sum to the mean square of the tests."""
+    force, _ = _core.bench_cycles(made.model(x).force_law_record(), loops.period, loops.displacement, loops.velocity, 2, state)
+    orders = loops.harmonics.shape[1]
+    spectrum = 2.0 * np.fft.rfft(force, axis=1)[:, 1:1 + orders] / force.shape[1]
+    lag = made.lag(x)[:, None] if made.lags else fixed
+    spectrum = spectrum * np.exp(-1j * (1 + np.arange(orders)) * loops.angular[:, None] * lag)
+    error = (spectrum - loops.harmonics) / (np.sqrt(2.0 * len(force)) * loops.scale[:, None])
+    error = error[loops.kept]
+    return np.concatenate([error.real, error.imag])
+
+
+def _least_squares(loops, made, x, fixed, bounds, progress):
+    from scipy.optimize import least_squares
+
+    low, high = made.bounds(bounds)
+    state = np.zeros_like(loops.force)
+    found = least_squares(lambda p: _misfit(loops, made, p, fixed, state), np.clip(x, low + 1e-9, high - 1e-9), bounds=(low, high), x_scale="jac",
+                          ftol=1e-7, xtol=1e-7, gtol=1e-10, max_nfev=40, verbose=2 if progress else 0)
+    return made, found.x
+
+
+def _jacobian(loops, made, x, fixed):
+    state, step = np.zeros_like(loops.force), 1e-5
+    return np.array([(_misfit(loops, made, x + step * unit, fixed, state) - _misfit(loops, made, x - step * unit, fixed, state)) / (2.0 * step)
+                     for unit in np.eye(x.size)]).T
+
+
+def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, started):
+    made, x, misfit = best
+    damper = made.model(x, f"identified from {len(cleaned)} bench tests, {method.replace('_', ' ')}")
+    lag = float(np.mean(made.lag(x))) if made.lags else fixed
+    confidence, told = {}, None
+    if method == "least_squares":
+        freedom = misfit.size - x.size
+        jacobian = _jacobian(loops, made, x, fixed)
+        spread = covariance(jacobian, misfit, freedom)
+        confidence = intervals(made, x, spread, freedom)
+        told = identifiability(made, x, jacobian, spread, made.bounds(bounds))
+    tests = _errors(cleaned, loops, damper, lag)
+    shifted = loops.shifted(lag)
+    stiffness = damper.series_stiffness
+    if made.kind == "maxwell" and stiffness is None:
+        stiffness = 1.0 / max(float(energy.stored(shifted)[0][0]), 1e-10)
+    compliance = np.array([0.0 if stiffness is None else 1.0 / stiffness])
+    damping = damper.damping or energy.dissipated(shifted, energy.damper_speed(shifted, compliance))
+    message = _message(loops, model, _norm(misfit), lag, lag_known, made, stiffness, damping, told)
+    return Fit(damper, method, damping, stiffness, confidence, told, tests, lag, message, perf_counter() - started, tuple(cleaned))
+
+
+def _errors(cleaned, loops, damper, lag):
+    found = []
+    for k, one in enumerate(cleaned):
+        begun = perf_counter()
+        force = _core.bench_cycles(damper.force_law_record(), loops.period[k:k + 1], loops.displacement[k:k + 1], loops.velocity[k:k + 1], 2)[0]
+        seconds = perf_counter() - begun
+        measured = loops.shifted(lag).force[k]
+        moving = force[0] - force[0].mean()
+        work, wanted = (np.mean(part * loops.velocity[k]) for part in (moving, measured))
+        error = np.sqrt(np.mean((moving - measured) ** 2) + loops.noise[k] ** 2) / loops.scale[k]
+        found.append(TestError(one.name, one.frequency, one.amplitude, float(error), float(work / wanted - 1.0),
+                               float(np.ptp(moving) / np.ptp(measured) - 1.0), seconds))
+    return tuple(found)
+
+
+def _message(loops, model, misfit, lag, lag_known, made, stiffness, damping, told):
+    """What the fit leaves, and which other model would leave less."""
+    said = [f"{model}: the loops are met within {100 * misfit:.2g} % of the r.m.s. force (noise of the mean cycles {100 * _floor(loops):.2g} %)"]
+    good = np.hypot(5e-3, 3.0 * _floor(loops))
+    if misfit > good:
+        better = _better(loops, model, lag, misfit, made.lags)
+        said.append(f"wrong model: {better} leaves less" if better else "wrong model: none of the models here meets these loops within their noise")
+    if stiffness is not None and loops.angular.max() * damping / stiffness < 0.02:
+        said.append(f"the series stiffness {stiffness:.3g} N/m is too high to matter in these tests: a viscous model is enough")
+    if made.kind == "viscous" and abs(lag) > 5e-4:
+        said.append(f"a lag of {1e3 * lag:.2f} ms does here what a series stiffness of {damping / abs(lag):.3g} N/m would do"
+                    if lag > 0 else f"the force leads by {-1e3 * lag:.2f} ms")
+    if not lag_known:
+        said.append("all tests have about one frequency: the lag cannot be told and is taken as 0")
+    return "; ".join([*said, *(told.warnings if told else ())])
+
+
+def _better(loops, model, lag, misfit, lags):
+    odd = _is_odd(loops)
+    for other in MODELS[MODELS.index(model) + 1:]:
+        tau = energy.lag_of(loops, odd)[0] if lags else lag
+        made, x = _start(loops, other, True, odd, tau, lags)
+        if _norm(_misfit(loops, made, x, lag)) < 0.7 * misfit:
+            return other
+    return None

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Confidence intervals and identifiability from the Jacobian of a least-squares fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+_ILL = 1e6       # condition of the scaled Jacobian
+_ALIKE = 0.98    # correlation of two estimates above which the tests hardly tell them apart
+_NEAR = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Identifiability:
+    """How well the tests tell the parameters apart.
+
+    Attributes
+    ----------
+    condition : float
+        Of the Jacobian with columns of length one.
+    correlation : ndarray (p, p)
+    names : tuple of str
+    warnings : tuple of str
+    """
+
+    condition: float
+    correlation: np.ndarray
+    names: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def covariance(jacobian, misfit, freedom):
+    """Covariance of the unknowns for independent errors of the size that the misfit shows."""
+    return np.linalg.pinv(jacobian.T @ jacobian) * float(misfit @ misfit) / max(freedom, 1)
+
+
+def intervals(parametrisation, x, spread, freedom):
+    """Name -> (low, high), 95 %: constants in SI; curves as pairs of arrays at their nodes."""
+    from scipy.stats import t
+
+    factor = t.ppf(0.975, max(freedom, 1))
+    d, k, lags = parametrisation.sizes
+    deviation = factor * np.sqrt(np.maximum(np.diag(spread), 0.0))
+    found = {}
+    if parametrisation.damping_nodes is None:
+        found["damping"] = tuple(float(np.exp(np.clip(x[0] + s * deviation[0], -700, 700))) for s in (-1, 1))
+    else:
+        zero = int(np.argmin(np.abs(parametrisation.damping_nodes)))
+        sums = np.tril(np.ones((d + 1, d)), -1)
+        found["damping_curve"] = _band(sums - sums[zero], parametrisation.top_force * x[:d], parametrisation.top_force**2 * spread[:d, :d], factor)
+    if k == 1:
+        found["series_stiffness"] = tuple(float(np.exp(np.clip(x[d] + s * deviation[d], -700, 700))) for s in (-1, 1))
+    elif k:
+        sums = np.tril(np.ones((k, k)))
+        sums[:, 1:] *= 1.0 if parametrisation.rising else -1.0
+        low, high = _band(sums, x[d:d + k], spread[d:d + k, d:d + k], factor)
+        found["series_stiffness_curve"] = np.exp(np.clip(low, -700, 700)), np.exp(np.clip(high, -700, 700))
+    if lags == 1:
+        found["lag"] = tuple(1e-3 * float(x[-1] + s * deviation[-1]) for s in (-1, 1))
+    return found
+
+
+def _band(combine, x, spread, factor):
+    middle = combine @ x
+    half = factor * np.sqrt(np.maximum(np.diag(combine @ spread @ combine.T), 0.0))
+    return middle - half, middle + half
+
+
+def identifiability(parametrisation, x, jacobian, spread, bounds):
+    """Condition, correlations, and warnings in words."""
+    names = parametrisation.names
+    length = np.linalg.norm(jacobian, axis=0)
+    scaled = jacobian / np.where(length > 0.0, length, 1.0)
+    values = np.linalg.svd(scaled, compute_uv=False)
+    condition = float(values[0] / values[-1]) if values[-1] > 0.0 else np.inf
+    size = np.sqrt(np.maximum(np.diag(spread), 1e-300))
+    correlation = spread / np.outer(size, size)
+    said = []
+    if condition > _ILL or (length <= 0.0).any():
+        said.append(f"the tests do not tell all parameters apart (condition {condition:.1e})")
+    d, k, lags = parametrisation.sizes
+    constants = ([0] if d == 1 else []) + ([d] if k == 1 else []) + ([d + k] if lags == 1 else [])
+    for place, i in enumerate(constants):
+        for j in constants[place + 1:]:
+            if abs(correlation[i, j]) > _ALIKE and max(size[i] / _unit(names[i]), size[j] / _unit(names[j])) > _NEAR:
+                said.append(f"{names[i]} and {names[j]} are hardly told apart by these tests (correlation {correlation[i, j]:+.3f}); "
+                            "add tests of higher or lower frequency")
+    for i in constants:
+        if not bounds[0][i] + 1e-3 < x[i] < bounds[1][i] - 1e-3:
+            said.append(f"{names[i]} is at its bound")
+        elif names[i] != "lag" and 1.96 * size[i] > 0.2:
+            said.append(f"{names[i]} is known to no better than {100 * 1.96 * size[i]:.0f} %")
+    return Identifiability(condition, correlation, tuple(names), tuple(said))
+
+
+def _unit(name):
+    return 20.0 if name == "lag" else 1.0
