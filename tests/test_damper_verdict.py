@@ -50,10 +50,12 @@ def test_a_damper_that_no_model_fits_is_named():
 def test_noise_is_not_held_against_a_model():
     one = records()[1]
     noisy = SimpleNamespace(**{key: getattr(one, key) for key in ("force", "name", "frequency", "amplitude", "label")}, noise=0.2 * np.std(one.force))
-    found = verdict({"maxwell": fit((0.2004,)), "maxwell_nonlinear": fit((0.2,))}, [noisy])
-    assert found.enough == ("maxwell_nonlinear",)     # 1.3 % of its own error is clearly more than none
-    found = verdict({"maxwell": fit((0.20005,)), "maxwell_nonlinear": fit((0.2,))}, [noisy])
+    # 0.2 of noise and 0.06 of its own: 0.2088
+    found = verdict({"maxwell": fit((0.2088,)), "maxwell_nonlinear": fit((0.2,))}, [noisy])
+    assert found.enough == ("maxwell_nonlinear",)
+    found = verdict({"maxwell": fit((0.2058,)), "maxwell_nonlinear": fit((0.2,))}, [noisy])
     assert found.enough == ("maxwell",) and "No model" not in str(found)
+    assert verdict({"maxwell": fit((0.2058,)), "maxwell_nonlinear": fit((0.2,))}, [noisy], tolerance=0.01).enough == ("maxwell_nonlinear",)
 
 
 def test_fits_that_cannot_be_compared():
@@ -80,7 +82,8 @@ def test_drawings_show_each_model():
     axes = plot_force_speed(given, records())
     lines = {line.get_label(): line for line in axes.get_lines()}
     speed, force = lines["viscous"].get_data()
-    assert force == pytest.approx(1e-3 * 4e5 * 1e-3 * speed)             # kN over mm/s
+    shown = np.isfinite(force)                                           # up to the peak force of the tests
+    assert shown.any() and force[shown] == pytest.approx(1e-3 * 4e5 * 1e-3 * speed[shown])   # kN over mm/s
     stiffness = plot_stiffness_speed(given, records()).get_lines()
     assert len(stiffness) == 1 and stiffness[0].get_ydata() == pytest.approx(np.full(301, 5.0))
     assert nearest_test(records(), 2.5, 1.4e-3).frequency == pytest.approx(3.0)

@@ -11,6 +11,7 @@ from railsym.dampers.record import RecordError
 
 _GAIN = 0.2         # of the loop error: what a costlier model must take off to be worth it
 _FLOOR = 0.005      # loop errors below this count as equal
+TOLERANCE = 0.05  # of the r.m.s. force: a loop this good is good enough for a vehicle model
 _POOR = 0.1         # loop error above which no model fits
 MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
 _WORDS = {"viscous": "the viscous damper", "maxwell": "the Maxwell model with constant stiffness",
@@ -31,7 +32,8 @@ class Verdict:
     loop_error, energy_error, peak_error, computing_time : ndarray (models, tests)
         R.m.s. error of the force over its r.m.s. value; relative errors of dissipated energy and peak force; s.
     enough : tuple of str
-        For each test the simplest model that no costlier one beats by more than a fifth of its loop error (and noise).
+        For each test the simplest model whose loop error, the noise left aside, is within the tolerance, or which no costlier
+        model beats by more than a fifth.
     text : str
         The verdict in words.
     """
@@ -52,7 +54,7 @@ class Verdict:
         return self.text
 
 
-def verdict(fits, records):
+def verdict(fits, records, tolerance=TOLERANCE):
     """Compare fits of different models to the same tests.
 
     Parameters
@@ -61,6 +63,8 @@ def verdict(fits, records):
         Model name ("viscous", "maxwell", "maxwell_nonlinear") -> its fit.
     records : sequence of CleanRecord
         The tests of the fits, in their order.
+    tolerance : float
+        Loop error, without the noise, at which a model is enough.
 
     Returns
     -------
@@ -81,18 +85,19 @@ def verdict(fits, records):
     errors = [np.array([[getattr(test, what) for test in fits[name].tests] for name in models], dtype=float)
               for what in ("loop_error", "energy_error", "peak_error", "computing_time")]
     noise = np.array([one.noise / (np.std(one.force) or 1.0) for one in records])
-    enough = tuple(models[_simplest(column, floor)] for column, floor in zip(errors[0].T, noise))
+    enough = tuple(models[_simplest(column, floor, tolerance)] for column, floor in zip(errors[0].T, noise))
     frequency, amplitude = (np.array([getattr(one, what) for one in records]) for what in ("frequency", "amplitude"))
-    text = _in_words(models, fits, records, errors, enough, noise)
+    text = f"Enough: loop error within {100 * tolerance:g} % of the r.m.s. force, noise left aside, or as good as the costlier models.\n"
+    text += _in_words(models, fits, records, errors, enough, noise)
     return Verdict(models, tuple(one.name for one in records), frequency, amplitude, *errors, enough, text)
 
 
-def _simplest(errors, noise):
-    """Number of the simplest model whose error, without the noise that no model can fit, is about the smallest."""
+def _simplest(errors, noise, tolerance):
+    """Number of the simplest model whose error, without the noise that no model can fit, is small or about the smallest."""
     own = np.sqrt(np.maximum(errors**2 - noise**2, 0.0))
     for k in range(len(own) - 1):
         best = own[k + 1:].min()
-        if own[k] - best <= max(_GAIN * own[k], _FLOOR):
+        if own[k] <= tolerance or own[k] - best <= max(_GAIN * own[k], _FLOOR):
             return k
     return len(own) - 1
 

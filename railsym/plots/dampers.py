@@ -52,7 +52,10 @@ def plot_force_speed(fits, records, *, axes=None):
     axes.plot(np.concatenate([1e3 * rate, -1e3 * rate]), 1e-3 * np.concatenate([peak[:, 0], peak[:, 1]]), "o", color=GREY,
               markersize=4, label="tests: peak force at the ends' peak speed")
     for name, fit in fits.items():
-        axes.plot(1e3 * speed, 1e-3 * damper_force(fit.model, speed), color=_COLOUR[name], linestyle=_DASHES[name], label=_damper_label(name))
+        force = damper_force(fit.model, speed)
+        # a curve ends where the tests do: beyond their peak force nothing is known
+        force[(force > 1.1 * peak[:, 0].max()) | (force < 1.1 * peak[:, 1].min())] = np.nan
+        axes.plot(1e3 * speed, 1e-3 * force, color=_COLOUR[name], linestyle=_DASHES[name], label=_damper_label(name))
     tidy(axes, "speed of the damper, mm/s", "force, kN", "Force against speed")
     axes.legend(fontsize=8, frameon=False, loc="upper left")
     return axes
