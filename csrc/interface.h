@@ -73,3 +73,14 @@ int rs_bench_run(const rs_law *law, int n, const double *time, const double *e, 
                  double s0, double *f, double *s, int *failed);
 int rs_bench_cycles(const rs_law *law, int tests, int n, const double *period, const double *e, const double *v,
                     int substeps, double *f, double *s, int *failed);
+
+enum {
+	RS_CREEP_KALKER_LINEAR = 0,
+	RS_CREEP_SHEN_HEDRICK_ELKINS = 1,
+	RS_CREEP_POLACH = 2,
+	RS_CREEP_FASTSIM = 3
+};
+enum { RS_CREEP_INPUTS = 15 };
+
+int rs_creep_forces(int law, int strips, int cells, int contacts, const double *in, double *force,
+                    double *slopes);

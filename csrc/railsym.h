@@ -64,6 +64,19 @@
  *             s        tests x n; the first of each row is the guess
  *   Returned  f s      tests x n; failed: number of the test, tests when none
  *   Status    as rs_bench_run; RS_NOT_CONVERGED also for no periodic motion in 200 cycles
+ *
+ * rs_creep_forces      tangential forces of rolling contacts
+ *   Given     law       RS_CREEP_...
+ *             strips, cells   grid of FASTSIM: strips across, cells along each; >= 1
+ *             contacts  n >= 0
+ *             in        15 x n: xi -, eta -, phi 1/m, a m (along x), b m, load N, friction -, shear modulus N/m^2,
+ *                       Kalker weight -, C11, C22, C23, C33 -, Polach's kA, kS -
+ *   Returned  force     3 x n: Fx N, Fy N, Mz N m on the wheel
+ *             slopes    18 x n: d(force i)/d(xi, eta, phi, load, friction, weight) in row 6 i + j, at
+ *                       constant a, b and coefficients; or NULL: skipped
+ *   Status    RS_OK, RS_BAD_INDEX (law), RS_BAD_SIZE
+ *   Notes     No load or no friction: no force, no slopes. a, b, modulus, weight and coefficients must be positive;
+ *             that is not checked. No allocation, no state. One law a file in csrc/creep.
  */
 #ifndef RAILSYM_H
 #define RAILSYM_H

@@ -14,9 +14,12 @@ from types import ModuleType
 _MODULE_OF = {
     "LinearContact": "contact",
     "LinearModel": "linear_model",
+    "Material": "creep",
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
     "Vehicle": "vehicle",
+    "creep_forces": "creep",
+    "creep_laws": "creep",
     "critical_speed": "critical_speed",
     "linear_model": "linear",
     "linearise": "linear",

@@ -7,7 +7,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from railsym._railsym import ffi, lib
-from railsym.errors import CoreError, ModelError
+from railsym.errors import ContactError, CoreError, ModelError
 
 _MEANING = {
     lib.RS_NO_MEMORY: "no memory",
@@ -290,3 +290,39 @@ def bench_cycles(law, period, elongation, rate, substeps=1, state=None):
     status = lib.rs_bench_cycles(laws.array, tests, n, *map(_doubles, given), substeps, _doubles(force), _doubles(state), failed)
     _check(status, f"virtual bench, test number {failed[0]}")
     return force, state
+
+
+CREEP_LAWS = {
+    "kalker_linear": lib.RS_CREEP_KALKER_LINEAR,
+    "shen_hedrick_elkins": lib.RS_CREEP_SHEN_HEDRICK_ELKINS,
+    "polach": lib.RS_CREEP_POLACH,
+    "fastsim": lib.RS_CREEP_FASTSIM,
+}
+
+
+def creep_forces(law, rows, grid, slopes):
+    """Creep forces of n contacts, and their slopes if asked.
+
+    Parameters
+    ----------
+    law : str
+        A key of CREEP_LAWS.
+    rows : array_like, shape (15, n)
+        Inputs as listed at rs_creep_forces in railsym.h.
+    grid : pair of int
+        Strips and cells of FASTSIM.
+    slopes : bool
+
+    Returns
+    -------
+    forces : ndarray, shape (3, n)
+    slopes : ndarray, shape (3, 6, n), or None
+    """
+    rows = np.ascontiguousarray(rows, dtype=float)
+    if rows.ndim != 2 or len(rows) != lib.RS_CREEP_INPUTS:
+        raise ContactError(f"creep forces take {lib.RS_CREEP_INPUTS} rows, got shape {rows.shape}")
+    contacts = rows.shape[1]
+    forces, found = np.empty((3, contacts)), np.empty((3, 6, contacts)) if slopes else None
+    _check(lib.rs_creep_forces(CREEP_LAWS[law], *grid, contacts, _doubles(rows), _doubles(forces),
+                               _doubles(found) if slopes else ffi.NULL), f"creep law {law}")
+    return forces, found
