@@ -10,7 +10,8 @@ import pytest
 import railsym as rs
 from railsym import plots
 from railsym.critical_speed import CriticalSpeeds
-from railsym.plots.outlines import box_of, outlines
+from railsym.plots.mode_shape import displacement
+from railsym.plots.outlines import Outline, box_of, outlines
 from railsym.plots.stability_curves import always_stable
 from railsym.plots.style import line_styles, spread
 from railsym.stability_map import StabilityMap
@@ -212,6 +213,17 @@ def test_mode_shape_displaces_each_body_by_its_shape():
     np.testing.assert_allclose(shift[rear].mean(), -shift[front].mean(), rtol=1e-9)
     np.testing.assert_allclose(shift / shift[front].max() if shift[front].max() > 0 else shift / shift[front].min(),
                                rest[:, 0] / rest[front, 0].max(), atol=1e-9)
+
+
+@pytest.mark.parametrize("angle, arm, move", [
+    ("yaw", (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),          # the nose goes to the right
+    ("roll", (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),         # the right side goes down
+    ("pitch", (1.0, 0.0, 0.0), (0.0, 0.0, -1.0)),       # the nose goes up
+])
+def test_a_rotation_moves_points_as_the_conventions_say(angle, arm, move):
+    vehicle = rs.load_vehicle("bogie")
+    outline = Outline(vehicle.body("frame").position + np.array([arm]), ("frame",), "frame")
+    np.testing.assert_allclose(displacement({f"frame.{angle}": 1.0}, vehicle, outline), [move], atol=1e-15)
 
 
 def test_mode_shape_draws_a_quarter_of_a_period_later():
