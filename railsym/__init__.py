@@ -12,25 +12,30 @@ from importlib import import_module
 from types import ModuleType
 
 _MODULE_OF = {
+    "ContactPair": "contact_pair",
     "LinearContact": "contact",
     "LinearModel": "linear_model",
     "Material": "creep",
+    "Profile": "profiles",
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
     "Vehicle": "vehicle",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",
+    "equivalent_conicity": "conicity",
     "linear_model": "linear",
     "linearise": "linear",
+    "load_profile": "profiles",
     "load_vehicle": "vehicle",
     "parameter_map": "stability_map",
+    "profiles": "profiles",
     "sensitivity": "sensitivity",
     "stability_map": "stability_map",
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("dampers", "plots",)
+_SUBMODULES = ("dampers", "plots")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 

@@ -12,7 +12,7 @@ from railsym.cli_damper import add_damper
 from railsym.cli_values import CommandError, criterion, numbers, quantity
 from railsym.errors import RailsymError
 
-_COMMANDS = ("stability", "modes", "damper", "vehicles")
+_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -86,6 +86,9 @@ def _parser():
     listing = commands.add_parser("vehicles", help="list the vehicles that come along, their bodies and configurations")
     listing.add_argument("--json", nargs="?", const="-", metavar="FILE", help="as JSON, to FILE or standard output")
     listing.set_defaults(run=_run("cli_modes", "list_vehicles"))
+    from railsym.cli_profiles import add_parser as add_profiles
+
+    add_profiles(commands, _typed, _add_output)
     return parser, commands
 
 
