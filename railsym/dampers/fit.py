@@ -127,7 +127,7 @@ def identify(records, model="maxwell", method="least_squares", bounds=None, prog
     odd = _is_odd(loops) if symmetric == "auto" else bool(symmetric)
     free_lag = lag == "auto" and loops.angular.max() > _DIFFERENT_FREQUENCIES * loops.angular.min()
     fixed = 0.0 if lag == "auto" else float(lag)
-    tau = energy.lag_of(loops, odd)[0] if free_lag else fixed
+    tau = energy.lag_of(loops, odd, _speeds(loops, model))[0] if free_lag else fixed
     shapes = {"constant": (False,), "curve": (True,), "auto": (False, True)}[damping]
     best = None
     for curve in shapes:
@@ -171,11 +171,16 @@ def _norm(misfit):
     return float(np.sqrt(misfit @ misfit))
 
 
+def _speeds(loops, model):
+    """Nodes of the stiffness curve of a model that has one."""
+    return stiffness_nodes(loops.velocity) if model == "maxwell_nonlinear" else None
+
+
 def _start(loops, model, curve, odd, tau, lags):
     """Parametrisation and vector by the energy method."""
     shifted = loops.shifted(tau)
     kind = "viscous" if model == "viscous" else "maxwell"
-    nodes = stiffness_nodes(loops.velocity) if model == "maxwell_nonlinear" else None
+    nodes = _speeds(loops, model)
     speed, stiffness, rising = loops.velocity, (), True
     if kind == "maxwell":
         compliance = np.maximum(energy.stored(shifted, nodes, odd)[0], 1e-10)
@@ -212,7 +217,7 @@ def _least_squares(loops, made, x, fixed, bounds, progress):
     low, high = made.bounds(bounds)
     state = np.zeros_like(loops.force)
     found = least_squares(lambda p: _misfit(loops, made, p, fixed, state), np.clip(x, low + 1e-9, high - 1e-9), bounds=(low, high), x_scale="jac",
-                          ftol=1e-7, xtol=1e-7, gtol=1e-10, max_nfev=40, verbose=2 if progress else 0)
+                          ftol=1e-7, xtol=1e-7, gtol=1e-10, max_nfev=60, verbose=2 if progress else 0)
     return made, found.x
 
 
@@ -279,7 +284,7 @@ def _message(loops, model, misfit, lag, lag_known, made, stiffness, damping, tol
 def _better(loops, model, lag, misfit, lags):
     odd = _is_odd(loops)
     for other in MODELS[MODELS.index(model) + 1:]:
-        tau = energy.lag_of(loops, odd)[0] if lags else lag
+        tau = energy.lag_of(loops, odd, _speeds(loops, other))[0] if lags else lag
         made, x = _start(loops, other, True, odd, tau, lags)
         if _norm(_misfit(loops, made, x, lag)) < 0.7 * misfit:
             return other
