@@ -9,6 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
+from benchmarks.creep import creep_figures
 from benchmarks.measure import Figure, cost_of_code, median_time, printed_by
 
 _DERIVE = "from derive.__main__ import generated_files; generated_files()"
@@ -99,4 +100,4 @@ def sensitivities():
 
 
 GROUPS = {"derive": derivation, "import": imports, "linearise": linearisation, "figures": stability_figures,
-          "sensitivity": sensitivities}
+          "sensitivity": sensitivities, "creep": creep_figures}

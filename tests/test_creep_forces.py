@@ -248,3 +248,18 @@ def test_material_is_checked():
         rs.Material(shear_modulus=-1.0)
     with pytest.raises(ValueError, match="Poisson"):
         rs.Material(poisson=0.6)
+
+
+def test_the_benchmarks_peer_is_the_same_algorithm():
+    """The Numba peer, run without Numba."""
+    from benchmarks.creep import fastsim_peer, sample
+    from railsym import _core
+
+    rows = sample(6)
+    ours = _core.creep_forces("fastsim", rows, (5, 8), False)[0]
+    assert fastsim_peer(rows, 5, 8) == pytest.approx(ours, rel=1e-9, abs=1e-9 * np.abs(ours).max())
+
+
+def test_the_example_of_the_page_runs():
+    page = (DATA.parents[2] / "docs" / "creep_forces.md").read_text(encoding="utf-8")
+    exec(page.split("```python")[1].split("```")[0], {"print": lambda *found: None})

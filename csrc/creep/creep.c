@@ -31,8 +31,11 @@ static void gather(const double *in, int contacts, int first, int count, batch *
 {
 	for (int k = 0; k < RS_CREEP_INPUTS; k++) {
 		const double *row = in + (size_t)k * contacts + first;
-		RS_EACH(l)
-			RS_AT(b->in[k], l) = row[l < count ? l : 0];
+		if (count == RS_LANES)
+			memcpy(&b->in[k], row, sizeof b->in[k]);
+		else
+			RS_EACH(l)
+				RS_AT(b->in[k], l) = row[l < count ? l : 0];
 	}
 }
 
@@ -93,8 +96,12 @@ RS_INLINE void scale(const batch *b, const rs_creep_input *law, const rs_creep_v
 
 static void scatter(const rs_lane *lanes, int rows, int contacts, int first, int count, double *to)
 {
-	for (int k = 0; k < rows; k++)
-		memcpy(to + (size_t)k * contacts + first, &lanes[k], count * sizeof(double));
+	if (count == RS_LANES)
+		for (int k = 0; k < rows; k++)
+			memcpy(to + (size_t)k * contacts + first, &lanes[k], sizeof *lanes);
+	else
+		for (int k = 0; k < rows; k++)
+			memcpy(to + (size_t)k * contacts + first, &lanes[k], count * sizeof(double));
 }
 
 RS_CREEP_KERNEL static void one_batch(int law, int slopes, batch *b, rs_creep_input *input, rs_lane *force, rs_lane *slope)
