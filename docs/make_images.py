@@ -40,6 +40,10 @@ def main():
     save(plots.plot_mode_shape(critical, without, speed=speed), "mode_shape.png")
     data = [name for name, value in without.parameters.components().items() if "position" not in name and value and np.isfinite(value)]
     save(plots.plot_sensitivities(rs.sensitivity(without, 0.2, parameters=["conicity", *data])), "sensitivity.png")
+    pair = rs.ContactPair("S1002", "UIC60", inclination=1 / 40)
+    amplitude, shift = np.linspace(1e-3, 7e-3, 121), np.arange(-140, 141) * 5e-5
+    conicities = [pair.equivalent_conicity(amplitude, with_roll=roll) for roll in (False, True)]
+    save(plots.plot_profile_pair(pair, pair.contact(shift), conicities, title="S1002 on UIC60, inclination 1:40, gauge 1435 mm"), "profile_pair.png")
 
 
 if __name__ == "__main__":

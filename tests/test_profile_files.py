@@ -70,6 +70,11 @@ def test_miniprof_with_and_without_columndef(tmp_path):
     body = "\n".join(f"  {a:.6f}\t{b:.6f}\t0.0" for a, b in rows[::-1])
     path.write_text(f"Filename=rail.ban\nXYPoints={len(rows)}\nXOffset=0.0\nColumnDef=X,Y,A\n\n{body}\n\" 1.0\t2.0\t3.0\n", encoding="utf-8")
     same(rs.load_profile(path), rows, tolerance=1e-8)
+    path.write_text(path.read_text(encoding="utf-8").replace("\t0.0\n", "\t0.0 a point added by hand % dent\n", 1), encoding="utf-8")
+    same(rs.load_profile(path), rows, tolerance=1e-8)
+    path.write_text(path.read_text(encoding="utf-8").replace("\t0.0\n", "\n", 1), encoding="utf-8")
+    with pytest.raises(ProfileError, match="rail.ban, line 7: 2 columns, where ColumnDef has X,Y,A"):
+        rs.load_profile(path)
     rows, path = points("S1002"), tmp_path / "wheel.whl"
     path.write_text("#MINIWHEELPROF\nMINIPROF 2020\nStock.......:\n\" 32.58 37.11\n(Sd/Sh/qR)\n\n"
                     + "\n".join(f"{a + 70.0:.6f} {b:.6f}" for a, b in rows) + "\n", encoding="latin-1")

@@ -59,7 +59,7 @@ def test_the_uic60_head_is_rail_a_of_en15302_turned_by_a_twentieth():
 def test_60e1_is_not_uic60():
     first, second = (rs.load_profile(name) for name in ("UIC60", "60E1"))
     apart = np.abs(np.interp(first.y, second.y, second.z) - first.z)[np.abs(first.y) < 34 * MM].max()
-    assert 0.02 * MM < apart < 0.12 * MM
+    assert apart == pytest.approx(0.0405 * MM, abs=0.001 * MM)
 
 
 def test_s1002_has_the_measures_of_its_name():

@@ -188,7 +188,7 @@ def _read_miniprof(name, lines):
     """Header ``key=value``, an empty line, then columns; ColumnDef names them (X lateral, Y height)."""
     columns, rows, started = ["X", "Y"], [], False
     for number, line in enumerate(lines, start=1):
-        text = line.split('"')[0].split("!")[0].strip()
+        text = re.split('["!%]', line)[0].strip()
         if not text:
             started = started or not line.strip()
         elif "=" in text and not started:
@@ -198,7 +198,9 @@ def _read_miniprof(name, lines):
                 if not {"X", "Y"} <= set(columns):
                     raise ProfileError(f"{name}, line {number}: ColumnDef={value.strip()!r} must hold X and Y")
         elif started:
-            values = _numbers(name, number, [cell for cell in re.split(r"[,;\s]+", text) if cell])
+            cells = [cell for cell in re.split(r"[,;\s]+", text) if cell]
+            words = next((k for k, cell in enumerate(cells) if cell[0].isalpha() and cell.lower() not in ("nan", "inf")), len(cells))
+            values = _numbers(name, number, cells[:words] if words > 1 else cells)      # a remark may follow the numbers
             if len(values) < len([c for c in columns if c != "*"]):
                 raise ProfileError(f"{name}, line {number}: {len(values)} columns, where ColumnDef has {','.join(columns)}")
             rows.append((number, values[columns.index("X")], values[columns.index("Y")]))
