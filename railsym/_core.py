@@ -131,11 +131,13 @@ class Laws:
 
     def set_preload(self, values):
         """Set the preload (N) of every law; shape (n,)."""
-        for law, value in zip(self.array, values, strict=True):
+        for law, value in zip(self.array, _vector(values, len(self.array), "preloads"), strict=True):
             law.preload = value
 
     def set_command(self, number, value):
         """Set the command (N or m) of one actuator."""
+        if not 0 <= number < len(self.array):
+            raise ModelError(f"command of force law {number}: there are {len(self.array)}, counted from 0")
         self.array[number].command = value
 
 
@@ -186,6 +188,13 @@ def _dense(kernel, entries):
     return matrix
 
 
+def _check_motion(status, what, residual):
+    """As `_check`; names the first coordinate whose residual is not finite."""
+    if status != lib.RS_OK:
+        wrong = np.flatnonzero(~np.isfinite(residual))
+        _check(status, f"{what}, coordinate {wrong[0]}" if len(wrong) else what)
+
+
 class Assembly:
     """The assembled model in C: residual and pencil over all coordinates.
 
@@ -216,6 +225,9 @@ class Assembly:
             Coordinate numbers, -1 for one that does not exist.
         laws : Laws, optional
         """
+        if name not in kernels() or name in self._counts:
+            raise ModelError(f"kernel {name!r} " + ("was added before; add all its instances at once" if name in self._counts
+                                                    else f"does not exist; there are {', '.join(kernels())}"))
         kernel = kernels()[name]
         inputs = np.ascontiguousarray(inputs, dtype=float)
         index = np.ascontiguousarray(index, dtype=np.intc)
@@ -237,7 +249,11 @@ class Assembly:
 
     def set_input(self, name, slot_name, values):
         """Give one input of every instance of a kernel new values, shape (count,)."""
+        if name not in self._counts:
+            raise ModelError(f"input {slot_name!r} of kernel {name!r}: none was added; there are {', '.join(self._counts) or 'none'}")
         kernel = kernels()[name]
+        if slot_name not in kernel.slot_of:
+            raise ModelError(f"kernel {name} has no input {slot_name!r}; it has {', '.join(kernel.inputs)}")
         values = _vector(values, self._counts[name], f"{name}.{slot_name}")
         _check(lib.rs_model_set_input(self._model, kernel.number, kernel.slot_of[slot_name], _doubles(values)),
                f"{name}.{slot_name}")
@@ -246,15 +262,16 @@ class Assembly:
         """Residual r(q, u, a), shape (n,); inputs are left as they are."""
         state = [_vector(v, self.size, what) for v, what in zip((q, u, a), "qua", strict=True)]
         r = np.empty(self.size)
-        _check(lib.rs_model_residual(self._model, *map(_doubles, state), _doubles(r)), "residual")
+        _check_motion(lib.rs_model_residual(self._model, *map(_doubles, state), _doubles(r)), "residual", r)
         return r
 
     def pencil(self, q, u, a, seed):
         """Matrix cq dr/dq + cu dr/du + ca dr/da, shape (n, n), for seed (cq, cu, ca)."""
         state = [_vector(v, self.size, what) for v, what in zip((q, u, a), "qua", strict=True)]
         r, matrix = np.empty(self.size), np.empty((self.size, self.size))
-        _check(lib.rs_model_pencil(self._model, *map(_doubles, state), _doubles(_vector(seed, 3, "seed")),
-                                   _doubles(r), _doubles(matrix)), "pencil")
+        status = lib.rs_model_pencil(self._model, *map(_doubles, state), _doubles(_vector(seed, 3, "seed")),
+                                     _doubles(r), _doubles(matrix))
+        _check_motion(status, "pencil", r)
         return matrix
 
 

@@ -56,8 +56,14 @@ def cubic_table(curve, element):
 
 
 def half_table(curve):
-    """As `cubic_table` for a curve over a magnitude (stop, stiffness over speed)."""
+    """As `cubic_table` for a curve over a magnitude (stop, stiffness over speed); it is not mirrored."""
     return _pchip(tuple(curve.x), tuple(curve.y))
+
+
+def held_table(curve):
+    """As `half_table`, held at its last value beyond its end: a stiffness stays positive."""
+    x, c = half_table(curve)
+    return np.append(x, 2.0 * x[-1] - x[0]), np.vstack([c, [curve.y[-1], 0.0, 0.0, 0.0]])
 
 
 def _odd(x, y):
@@ -89,11 +95,13 @@ def _maxwell(p, element):
         "damping": p.get("damping", 0.0),
         "damping_curve": cubic_table(damping, element) if damping is not None else None,
         "stiffness": p.get("series_stiffness", 0.0),
-        "stiffness_curve": half_table(stiffness) if stiffness is not None else None,
+        "stiffness_curve": held_table(stiffness) if stiffness is not None else None,
     }
 
 
 def _bump_stop(p, element):
+    if "curve" in p and p["curve"].x[0] < 0.0:  # both sides given: they may differ
+        return {"kind": "spring_damper", "stiffness_curve": cubic_table(p["curve"], element)}
     table = half_table(p["curve"]) if "curve" in p else None
     return {"kind": "bump_stop", "clearance": p.get("clearance", 0.0), "stiffness": p.get("stiffness", 0.0),
             "stiffness_curve": table}

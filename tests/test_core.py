@@ -33,8 +33,25 @@ def test_index_outside_the_model(index):
 
 
 def test_a_kernel_is_added_once(assembly):
-    with pytest.raises(CoreError, match="adding bushing"):
+    with pytest.raises(ModelError, match="'bushing' was added before"):
         assembly.add("bushing", inputs("bushing"), TWELVE)
+
+
+def test_unknown_kernels_and_inputs_name_what_exists(assembly):
+    with pytest.raises(ModelError, match="'bushng' does not exist; there are rigid_body, .*bushing"):
+        assembly.add("bushng", inputs("bushing"), TWELVE)
+    with pytest.raises(ModelError, match="kernel 'axis': none was added; there are bushing"):
+        assembly.set_input("axis", "e0", [0.0])
+    with pytest.raises(ModelError, match="bushing has no input 'stiffness'; it has k0"):
+        assembly.set_input("bushing", "stiffness", [0.0])
+
+
+def test_preloads_and_commands_of_force_laws():
+    laws = _core.Laws([{"kind": "none"}] * 2)
+    with pytest.raises(ModelError, match="preloads: 2 numbers are needed, 3 were given"):
+        laws.set_preload(np.zeros(3))
+    with pytest.raises(ModelError, match="command of force law 2: there are 2"):
+        laws.set_command(2, 1.0)
 
 
 @pytest.mark.parametrize(("table", "index"), [
@@ -96,9 +113,9 @@ def test_inputs_and_seeds_of_the_wrong_size(assembly):
 def test_a_residual_that_is_not_finite_is_an_error(assembly, bad):
     q = REST.copy()
     q[3] = q[1] = bad
-    with pytest.raises(CoreError, match="residual: the residual is not finite"):
+    with pytest.raises(CoreError, match="residual, coordinate [0-3]: the residual is not finite"):
         assembly.residual(q, REST, REST)
-    with pytest.raises(CoreError, match="pencil: the residual is not finite"):
+    with pytest.raises(CoreError, match="pencil, coordinate [0-3]: the residual is not finite"):
         assembly.pencil(q, REST, REST, (1, 0, 0))
     assert np.isfinite(assembly.residual(REST, REST, REST)).all()  # and it leaves no trace
 

@@ -173,3 +173,19 @@ def test_tables_are_shared():
 def test_a_curve_whose_other_half_is_unknown(points):
     with pytest.raises(ModelError, match=r"group.one: curve 'hard' begins at .* begin at \(0, 0\)"):
         law_record(element("spring", curve=curve(points)))
+
+
+def test_a_stiffness_over_speed_is_held_beyond_its_end():
+    """Straight on, a falling stiffness would become negative: -2e6 N/m at 0.5 m/s here."""
+    falling = curve(([0.0, 0.1, 0.2], [3e6, 2e6, 1e6]), ("m/s", "N/m"))
+    record = law_record(element("maxwell", damping=1.0, series_stiffness_curve=falling))
+    for speed in (0.2, 0.3, -0.5, 50.0):
+        assert force(record, e=1e-3, v=speed) == pytest.approx(1e3, rel=ROUNDOFF)
+    assert force(record, e=1e-3, v=0.1) == pytest.approx(2e3, rel=ROUNDOFF)
+
+
+def test_a_bump_stop_with_both_sides_given_is_not_mirrored():
+    points = ([-0.01, 0.0, 0.02, 0.03], [-5.0, 0.0, 100.0, 300.0])
+    record = law_record(element("bump_stop", curve=curve(points)))
+    for e in (-0.008, 0.005, 0.02, 0.027):
+        assert force(record, e=e) == pytest.approx(float(PchipInterpolator(*points)(e)), rel=1e-12)
