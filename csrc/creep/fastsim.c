@@ -23,7 +23,7 @@
 #include "../creep.h"
 
 #if defined(__GNUC__)
-#define BLOCK 4 /* strips side by side: the square root of one hides behind the others */
+#define BLOCK 5 /* strips side by side: the square root of one hides behind the others */
 typedef float single_lane __attribute__((vector_size(4 * RS_LANES), may_alias));
 typedef long long mask_lane __attribute__((vector_size(8 * RS_LANES), may_alias));
 /* All bits of a lane where it is not below zero, none where it is. */
@@ -49,7 +49,7 @@ typedef int mask_lane;
 #if defined(__clang__)
 #define UNROLL _Pragma("unroll")
 #elif defined(__GNUC__)
-#define UNROLL _Pragma("GCC unroll 4")
+#define UNROLL _Pragma("GCC unroll 5")
 #else
 #define UNROLL
 #endif
