@@ -263,3 +263,15 @@ def test_the_benchmarks_peer_is_the_same_algorithm():
 def test_the_example_of_the_page_runs():
     page = (DATA.parents[2] / "docs" / "creep_forces.md").read_text(encoding="utf-8")
     exec(page.split("```python")[1].split("```")[0], {"print": lambda *found: None})
+
+
+def test_slopes_are_the_coefficients_of_the_linear_contact():
+    given = {"friction": 0.3, "kalker_weight": 0.7, "wheel_transverse_radius": np.inf, "rail_transverse_radius": 0.3,
+             "young_modulus": 2.1e11, "poisson_ratio": 0.28}
+    w = rs.LinearContact(conicity=0.2, amplitude=0.0, **given).resolved({}).wheels(
+        np.array([6e4, 8e4]), np.array([0.46, 0.42]), np.array([0.75, 0.75]), np.array([-1.0, 1.0]))
+    steel = rs.Material(2.1e11 / (2 * 1.28), 0.28)
+    found = rs.creep_forces("kalker", w.a, w.b, np.zeros((2, 3)), w.load, 0.3, steel, kalker_weight=0.7, derivatives=True).derivatives
+    zero = np.zeros(2)
+    expected = [[-w.f11, zero, zero], [zero, -w.f22, -w.f23], [zero, w.f23, -w.f33]]
+    assert found[:, :, :3] == pytest.approx(np.moveaxis(np.array(expected), -1, 0), rel=1e-12)
