@@ -107,8 +107,9 @@ def _draw_conicity(axes, conicities):
         if not found.with_roll and found.amplitude[0] <= at <= found.amplitude[-1]:
             value = float(np.interp(at, found.amplitude, found.conicity))
             axes.plot([_MM * at], [value], "o", color=colour, markersize=4.5)
-            axes.annotate(f"{value:.3f} at 3 mm", (_MM * at, value), (0, -16), textcoords="offset points", fontsize=8, color=GREY,
-                          ha="center")
+            low = value < 0.15 * np.nanmax(found.conicity)       # below it there would be no room
+            axes.annotate(f"{value:.3f} at 3 mm", (_MM * at, value), (-4, 8) if low else (0, -16), textcoords="offset points", fontsize=8,
+                          color=GREY, ha="right" if low else "center")
     axes.set_ylim(bottom=0.0 if not any((f.conicity < 0.0).any() for f in conicities) else None)
     axes.legend(fontsize=8, frameon=False)
     tidy(axes, "amplitude, mm", "tan $\\gamma_e$", "equivalent conicity (EN 15302)")
