@@ -47,14 +47,6 @@ rs_creep_law rs_creep_fastsim;
 #define RS_AT(x, l) (((double *)&(x))[l])
 #define RS_OF(x, l) (((const double *)&(x))[l])
 
-/* Compiled for three levels of processor, the best one chosen on loading by what the processor can do
- * (x86-64-v4: AVX-512, v3: AVX2 and FMA), whoever made it. */
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__) && defined(__GNUC__) && __GNUC__ >= 12
-#define RS_CREEP_KERNEL __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define RS_CREEP_KERNEL
-#endif
-
 /* Parts of a law: inlined, so that they are compiled for the processor their caller is compiled for. */
 #if defined(__GNUC__)
 #define RS_INLINE static inline __attribute__((always_inline))

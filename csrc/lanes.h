@@ -11,6 +11,7 @@
 
 #include <math.h>
 
+#include "dispatch.h"
 #include "railsym.h"
 
 #ifdef RS_COMPLEX
@@ -32,11 +33,7 @@ typedef double rs_lane __attribute__((vector_size(8 * RS_LANES), may_alias));
 typedef double rs_lane;
 #endif
 #define RS_NAME(x) rs_##x##_lanes
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__) && defined(__GNUC__)
-#define RS_KERNEL __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
-#else
-#define RS_KERNEL
-#endif
+#define RS_KERNEL RS_CLONES
 #define RS_SQRT(to, from) \
 	for (int lane_ = 0; lane_ < RS_LANES; lane_++) \
 		((double *)&(to))[lane_] = sqrt(((const double *)&(from))[lane_])

@@ -104,7 +104,7 @@ static void scatter(const rs_lane *lanes, int rows, int contacts, int first, int
 			memcpy(to + (size_t)k * contacts + first, &lanes[k], count * sizeof(double));
 }
 
-RS_CREEP_KERNEL static void one_batch(int law, int slopes, batch *b, rs_creep_input *input, rs_lane *force, rs_lane *slope)
+RS_CLONES static void one_batch(int law, int slopes, batch *b, rs_creep_input *input, rs_lane *force, rs_lane *slope)
 {
 	rs_creep_value value;
 	normalise(b, law != RS_CREEP_KALKER_LINEAR, input);

@@ -152,7 +152,7 @@ RS_INLINE void strips_together(const rs_creep_input *in, int tangents, int block
 	}
 }
 
-RS_CREEP_KERNEL void rs_creep_fastsim(const rs_creep_input *in, int slopes, rs_creep_value *out)
+RS_CLONES void rs_creep_fastsim(const rs_creep_input *in, int slopes, rs_creep_value *out)
 {
 	rs_lane across = 2.0 / (in->root * in->root);
 	double straight = 3.0 * RS_PI / 16.0;

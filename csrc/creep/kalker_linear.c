@@ -9,7 +9,7 @@
 
 #include "../creep.h"
 
-RS_CREEP_KERNEL void rs_creep_kalker_linear(const rs_creep_input *in, int slopes, rs_creep_value *out)
+RS_CLONES void rs_creep_kalker_linear(const rs_creep_input *in, int slopes, rs_creep_value *out)
 {
 	rs_lane of_lateral = in->c23 / in->c22, of_spin = -in->c33 / in->c23;
 	out->h[0] = -in->u[0];

@@ -128,7 +128,7 @@ RS_INLINE void limits(const rs_creep_input *in, const polach *p, rs_creep_value 
 	}
 }
 
-RS_CREEP_KERNEL void rs_creep_polach(const rs_creep_input *in, int slopes, rs_creep_value *out)
+RS_CLONES void rs_creep_polach(const rs_creep_input *in, int slopes, rs_creep_value *out)
 {
 	polach p;
 	creepages(in, &p);

@@ -26,7 +26,7 @@ RS_INLINE void saturation(const rs_lane *square, rs_lane *R, rs_lane *slope_over
 	}
 }
 
-RS_CREEP_KERNEL void rs_creep_shen_hedrick_elkins(const rs_creep_input *in, int slopes, rs_creep_value *out)
+RS_CLONES void rs_creep_shen_hedrick_elkins(const rs_creep_input *in, int slopes, rs_creep_value *out)
 {
 	rs_lane x = in->u[0], y = in->u[1] + in->u[2], square = x * x + y * y, R, slope, of_moment, moment_slope;
 	rs_lane of_lateral = in->c23 / in->c22, of_spin = -in->c33 / in->c23;
