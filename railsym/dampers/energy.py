@@ -64,6 +64,10 @@ class Loops:
         turned = self.harmonics * np.exp(1j * order * self.angular[:, None] * lag)
         return replace(self, force=synthesis(turned * self._clear, self.force.shape[1]), harmonics=turned)
 
+    def only(self, test):
+        """The loop of one test."""
+        return replace(self, **{name: getattr(self, name)[test:test + 1] for name in self.__dataclass_fields__})
+
     @property
     def _clear(self):
         """Harmonics that stand out of the noise; the others would only make the damper's speed noisy."""
@@ -123,17 +127,33 @@ def integral(signal, period):
     return np.fft.irfft(spectrum, signal.shape[-1], axis=-1)
 
 
-def stored(loops, stiffness_nodes=None, symmetric=True):
+def constants(loops, lag=None, viscous=False):
+    """Stiffness (N/m), damping (N s/m) and lag (s) of constants by the first harmonics alone; ``viscous``: without 1/k.
+
+    X/F = (1/k + 1/(i omega c)) exp(i omega lag): the real part is the energy stored, the imaginary one that dissipated. It is
+    linear in 1/k and 1/c; the lag is searched where it is None. Mean harmonics are all but free of noise.
+    """
+    motion = 2.0 * np.fft.rfft(loops.displacement, axis=1)[:, 1] / loops.displacement.shape[1]
+    ratio, omega = loops.harmonics[:, 0] / motion, loops.angular
+    lags, width = (np.linspace(-LARGEST_LAG, LARGEST_LAG, 81), 1e-3) if lag is None else (np.array([lag]), 0.0)
+    while True:
+        spring = ratio * np.exp(1j * omega * lags[:, None])
+        damper = spring / (1j * omega)                     # at right angles to ``spring`` in the complex plane
+        compliance = (not viscous) * np.maximum(np.sum(spring.real, axis=1) / np.sum(np.abs(spring) ** 2, axis=1), 1e-10)
+        fluidity = np.maximum(np.sum(damper.real, axis=1) / np.sum(np.abs(damper) ** 2, axis=1), 1e-10)
+        left = np.sum(np.abs(compliance[:, None] * spring + fluidity[:, None] * damper - 1.0) ** 2, axis=1)
+        best = int(np.argmin(left))
+        if width < 1e-6:
+            return np.inf if viscous else 1.0 / float(compliance[best]), 1.0 / float(fluidity[best]), float(lags[best])
+        lags, width = lags[best] + np.linspace(-width, width, 41), 0.1 * width
+
+
+def stored(loops, stiffness_nodes=None, symmetric=True, linear=False):
     """Compliance j (nodes,) and relative misfit of the elongation, for loops without lag.
 
-    ``stiffness_nodes`` are the speeds (m/s) of j's hats; None for a constant.
+    ``stiffness_nodes`` are the speeds (m/s) of j's hats; None for a constant. ``linear``: R is a constant times F.
     """
-    top = np.abs(loops.force).max()
-    grid = top * np.linspace(0.0, 1.0, _RESISTANCES + 1)[1:] ** 1.5
-    nodes = np.concatenate([-grid[::-1], [0.0], grid])
-    bases = hats(loops.force, nodes)
-    if symmetric:  # odd: a hat less its mirror image
-        bases = bases[_RESISTANCES + 1:] - bases[_RESISTANCES - 1::-1]
+    bases = _resistances(loops, symmetric) if not linear else [loops.force]
     weight = 1.0 / np.sqrt(np.mean(loops.displacement**2, axis=1))[:, None]
     columns = [integral(basis, loops.period) for basis in bases]
     if stiffness_nodes is None:
@@ -151,19 +171,28 @@ def stored(loops, stiffness_nodes=None, symmetric=True):
     return (found / size)[:len(spring)], float(misfit)
 
 
-def lag_of(loops, symmetric=True, stiffness_nodes=None):
+def _resistances(loops, symmetric):
+    """Hats of the force that make up R."""
+    top = np.abs(loops.force).max()
+    grid = top * np.linspace(0.0, 1.0, _RESISTANCES + 1)[1:] ** 1.5
+    bases = hats(loops.force, np.concatenate([-grid[::-1], [0.0], grid]))
+    # odd: a hat less its mirror image
+    return bases[_RESISTANCES + 1:] - bases[_RESISTANCES - 1::-1] if symmetric else bases
+
+
+def lag_of(loops, symmetric=True, stiffness_nodes=None, linear=False):
     """Lag (s) of the force, where the misfit of the stored elongation is least, and that misfit."""
     grid = np.linspace(-LARGEST_LAG, LARGEST_LAG, 21)
-    misfit = [stored(loops.shifted(lag), stiffness_nodes, symmetric) for lag in grid]
+    misfit = [stored(loops.shifted(lag), stiffness_nodes, symmetric, linear) for lag in grid]
     # A compliance below zero is no spring: such a lag is out of question.
     value = [m if np.sum(j) > 0.0 else np.inf for j, m in misfit]
     from scipy.optimize import minimize_scalar
 
     k = int(np.argmin(value))
     if not np.isfinite(value[k]):
-        return 0.0, stored(loops, stiffness_nodes, symmetric)[1]
+        return 0.0, stored(loops, stiffness_nodes, symmetric, linear)[1]
     lo, hi = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
-    best = minimize_scalar(lambda lag: stored(loops.shifted(lag), stiffness_nodes, symmetric)[1], bounds=(lo, hi), method="bounded",
+    best = minimize_scalar(lambda lag: stored(loops.shifted(lag), stiffness_nodes, symmetric, linear)[1], bounds=(lo, hi), method="bounded",
                            options={"xatol": 2e-6, "maxiter": 25})
     return float(best.x), float(best.fun)
 
@@ -179,13 +208,18 @@ def damper_speed(loops, compliance, stiffness_nodes=None):
 
 
 def dissipated(loops, speed):
-    """Damping c (N s/m) by the energy balance over all tests, each relative to its own dissipation."""
-    taken = np.mean(loops.force * loops.velocity, axis=1)
-    need = np.mean(speed**2, axis=1)
-    return float(np.sum(taken * need / loops.scale**2) / np.sum(need**2 / loops.scale**2))
+    """Damping c (N s/m) by the energy balance int F w dt = int F^2 dt / c, over all tests.
+
+    The force is known better than the speed w, whose noise would bias int w^2 dt.
+    """
+    taken = np.mean(loops.force * speed, axis=1)
+    own = np.mean(speed**2, axis=1)
+    square = np.mean(loops.force**2, axis=1)
+    weight = 1.0 / (square * np.maximum(np.mean(loops.velocity**2, axis=1), own) + 1e-300)
+    return float(np.sum(square**2 * weight) / max(np.sum(square * taken * weight), 1e-300))
 
 
-def force_curve(loops, speed, nodes):
+def force_curve(loops, speed, nodes, steepest=np.inf):
     """Rising force (N) at ``nodes`` (m/s, 0 among them with no force) by least squares of F = D(w); each test has its mean."""
     from scipy.optimize import nnls
 
@@ -201,6 +235,6 @@ def force_curve(loops, speed, nodes):
     table = table / size
     root = np.linalg.cholesky(table.T @ table + 1e-9 * np.eye(len(bases))).T
     slopes = nnls(root, np.linalg.solve(root.T, table.T @ wanted))[0] / size
-    rise = slopes * np.diff(nodes)
+    rise = np.minimum(slopes, steepest) * np.diff(nodes)
     force = np.concatenate([[0.0], np.cumsum(rise)])
     return force - force[zero]

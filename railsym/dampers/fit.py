@@ -8,8 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
-from railsym import _core
-from railsym.dampers import energy
+from railsym.dampers import energy, solve
 from railsym.dampers.models import DamperModel
 from railsym.dampers.parametrisation import Parametrisation, damping_nodes, stiffness_nodes
 from railsym.dampers.uncertainty import Identifiability, covariance, identifiability, intervals
@@ -19,6 +18,10 @@ MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
 METHODS = ("energy", "least_squares")
 _DIFFERENT_FREQUENCIES = 1.2  # ratio that tells the lag
 _GOOD = 1e-3                  # relative misfit below which a constant is enough
+_DOUBTFUL = 3e-3              # relative misfit above which a fit is begun again from another lag
+_NO_MODEL = {"energy": 0.15, "least_squares": 0.05}  # relative misfit above which a model is wrong even if none is better
+_CONSTANT = 0.04             # a stiffness that changes by less over the tests is constant
+_STEEPEST = 100.0             # times the equivalent damping: the start of a curve
 _EVEN = 5e-3                  # even harmonics above this part of the force: not symmetric
 
 
@@ -127,17 +130,14 @@ def identify(records, model="maxwell", method="least_squares", bounds=None, prog
     odd = _is_odd(loops) if symmetric == "auto" else bool(symmetric)
     free_lag = lag == "auto" and loops.angular.max() > _DIFFERENT_FREQUENCIES * loops.angular.min()
     fixed = 0.0 if lag == "auto" else float(lag)
-    tau = energy.lag_of(loops, odd, _speeds(loops, model))[0] if free_lag else fixed
+    given = None if free_lag else fixed
     shapes = {"constant": (False,), "curve": (True,), "auto": (False, True)}[damping]
     best = None
     for curve in shapes:
-        found = _start(loops, model, curve, odd, tau, int(free_lag))
-        if method == "least_squares":
-            found = _least_squares(loops, *found[:2], fixed, bounds, progress)
-        found = (*found[:2], _misfit(loops, *found[:2], fixed))
+        found = _fitted(loops, model, curve, odd, given, method, bounds, progress)
         if best is None or _norm(found[2]) < 0.8 * _norm(best[2]):
             best = found
-        if _norm(best[2]) < np.hypot(_GOOD, 2.0 * _floor(loops)):
+        if _norm(best[2]) < np.hypot(_GOOD, 2.0 * solve.noise_floor(loops)):
             break
     return _result(cleaned, loops, best, fixed, model, method, bounds, free_lag or lag != "auto", started)
 
@@ -159,12 +159,7 @@ def _cleaned(records):
 
 def _is_odd(loops):
     even = np.linalg.norm(loops.harmonics[:, 1::2], axis=1) / np.linalg.norm(loops.harmonics, axis=1)
-    return bool(np.median(even) < _EVEN + 3.0 * _floor(loops))
-
-
-def _floor(loops):
-    """Relative misfit that noise leaves in the harmonics."""
-    return float(np.sqrt(np.mean((loops.noise / loops.scale) ** 2 * 2.0 * loops.kept.sum(axis=1) / loops.samples)))
+    return bool(np.median(even) < _EVEN + 3.0 * solve.noise_floor(loops))
 
 
 def _norm(misfit):
@@ -176,55 +171,56 @@ def _speeds(loops, model):
     return stiffness_nodes(loops.velocity) if model == "maxwell_nonlinear" else None
 
 
+def _lags(loops, model, curve, odd, given):
+    """Lags (s) to begin with, the likeliest first."""
+    if given is not None:
+        return [given]
+    plain = energy.constants(loops, viscous=model == "viscous")[2]
+    if model == "viscous" or (model == "maxwell" and not curve):
+        return [plain]
+    return [energy.lag_of(loops, odd, _speeds(loops, model), linear=not curve)[0], plain]
+
+
+def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, quick=False):
+    """Parametrisation, vector and misfit; from the second lag too where the first one leaves much."""
+    best, fixed = None, 0.0 if given is None else given
+    for tau in _lags(loops, model, curve, odd, given):
+        made, x = _start(loops, model, curve, odd, tau, int(given is None))
+        if method == "least_squares":
+            made, x = solve.refine(loops, made, x, fixed, bounds, progress, 12 if curve else 40, curve)
+            if curve and not quick:
+                made, x = solve.with_better_nodes(loops, made, x)
+                made, x = solve.refine(loops, made, x, fixed, bounds, progress)
+        found = made, x, solve.misfit(loops, made, x, fixed)
+        if best is None or _norm(found[2]) < _norm(best[2]):
+            best = found
+        if _norm(best[2]) < np.hypot(_DOUBTFUL, 2.0 * solve.noise_floor(loops)):
+            break
+    return best
+
+
 def _start(loops, model, curve, odd, tau, lags):
     """Parametrisation and vector by the energy method."""
     shifted = loops.shifted(tau)
     kind = "viscous" if model == "viscous" else "maxwell"
     nodes = _speeds(loops, model)
-    speed, stiffness, rising = loops.velocity, (), True
-    if kind == "maxwell":
-        compliance = np.maximum(energy.stored(shifted, nodes, odd)[0], 1e-10)
-        constant = max(float(energy.stored(shifted, None, odd)[0][0]), 1e-10)
+    stiffness, value, _ = energy.constants(loops, tau, model == "viscous")
+    speed, rising = loops.velocity, True
+    if kind == "maxwell" and (curve or nodes is not None):
+        constant = max(float(energy.stored(shifted, None, odd, not curve)[0][0]), 1e-10)
+        compliance = np.maximum(energy.stored(shifted, nodes, odd, not curve)[0], 1e-10)
         rising = bool(compliance[-1] <= compliance[0])
         ordered = np.minimum.accumulate if rising else np.maximum.accumulate
         compliance = ordered(np.clip(compliance, 0.1 * constant, 10.0 * constant))
         stiffness = 1.0 / compliance
         speed = energy.damper_speed(shifted, compliance, nodes)
+        value = energy.dissipated(shifted, speed)
+    at = None
     if curve:
         at = damping_nodes(speed, odd)
-        value = energy.force_curve(shifted, speed, at)
-    else:
-        at, value = None, energy.dissipated(shifted, speed)
+        value = energy.force_curve(shifted, speed, at, _STEEPEST * max(value, 1.0))
     made = Parametrisation(kind, at, nodes, float(np.abs(loops.force).max()), rising, lags)
     return made, made.vector(max(value, 1.0) if at is None else value, stiffness, tau)
-
-
-def _misfit(loops, made, x, fixed, state=None):
-    """Harmonics 1.. of model less measured, relative to the r.m.s. force; squares sum to the mean square of the tests."""
-    force, _ = _core.bench_cycles(made.model(x).force_law_record(), loops.period, loops.displacement, loops.velocity, 2, state)
-    orders = loops.harmonics.shape[1]
-    spectrum = 2.0 * np.fft.rfft(force, axis=1)[:, 1:1 + orders] / force.shape[1]
-    lag = made.lag(x)[:, None] if made.lags else fixed
-    spectrum = spectrum * np.exp(-1j * (1 + np.arange(orders)) * loops.angular[:, None] * lag)
-    error = (spectrum - loops.harmonics) / (np.sqrt(2.0 * len(force)) * loops.scale[:, None])
-    error = error[loops.kept]
-    return np.concatenate([error.real, error.imag])
-
-
-def _least_squares(loops, made, x, fixed, bounds, progress):
-    from scipy.optimize import least_squares
-
-    low, high = made.bounds(bounds)
-    state = np.zeros_like(loops.force)
-    found = least_squares(lambda p: _misfit(loops, made, p, fixed, state), np.clip(x, low + 1e-9, high - 1e-9), bounds=(low, high), x_scale="jac",
-                          ftol=1e-7, xtol=1e-7, gtol=1e-10, max_nfev=60, verbose=2 if progress else 0)
-    return made, found.x
-
-
-def _jacobian(loops, made, x, fixed):
-    state, step = np.zeros_like(loops.force), 1e-5
-    return np.array([(_misfit(loops, made, x + step * unit, fixed, state) - _misfit(loops, made, x - step * unit, fixed, state)) / (2.0 * step)
-                     for unit in np.eye(x.size)]).T
 
 
 def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, started):
@@ -234,7 +230,7 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
     confidence, told = {}, None
     if method == "least_squares":
         freedom = misfit.size - x.size
-        jacobian = _jacobian(loops, made, x, fixed)
+        jacobian = solve.evidence(loops, made, x, fixed)
         spread = covariance(jacobian, misfit, freedom)
         confidence = intervals(made, x, spread, freedom)
         told = identifiability(made, x, jacobian, spread, made.bounds(bounds))
@@ -245,17 +241,17 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
         stiffness = 1.0 / max(float(energy.stored(shifted)[0][0]), 1e-10)
     compliance = np.array([0.0 if stiffness is None else 1.0 / stiffness])
     damping = damper.damping or energy.dissipated(shifted, energy.damper_speed(shifted, compliance))
-    message = _message(loops, model, _norm(misfit), lag, lag_known, made, stiffness, damping, told)
+    message = _message(loops, model, method, _norm(misfit), lag, lag_known, made, x, stiffness, damping, told)
     return Fit(damper, method, damping, stiffness, confidence, told, tests, lag, message, perf_counter() - started, tuple(cleaned))
 
 
 def _errors(cleaned, loops, damper, lag):
-    found = []
+    found, shifted = [], loops.shifted(lag)
     for k, one in enumerate(cleaned):
         begun = perf_counter()
-        force = _core.bench_cycles(damper.force_law_record(), loops.period[k:k + 1], loops.displacement[k:k + 1], loops.velocity[k:k + 1], 2)[0]
+        force = solve.steady(loops.only(k), damper)[0]
         seconds = perf_counter() - begun
-        measured = loops.shifted(lag).force[k]
+        measured = shifted.force[k]
         moving = force[0] - force[0].mean()
         work, wanted = (np.mean(part * loops.velocity[k]) for part in (moving, measured))
         error = np.sqrt(np.mean((moving - measured) ** 2) + loops.noise[k] ** 2) / loops.scale[k]
@@ -264,15 +260,24 @@ def _errors(cleaned, loops, damper, lag):
     return tuple(found)
 
 
-def _message(loops, model, misfit, lag, lag_known, made, stiffness, damping, told):
-    """What the fit leaves, and which other model would leave less."""
-    said = [f"{model}: the loops are met within {100 * misfit:.2g} % of the r.m.s. force (noise of the mean cycles {100 * _floor(loops):.2g} %)"]
-    good = np.hypot(5e-3, 3.0 * _floor(loops))
-    if misfit > good:
-        better = _better(loops, model, lag, misfit, made.lags)
-        said.append(f"wrong model: {better} leaves less" if better else "wrong model: none of the models here meets these loops within their noise")
-    if stiffness is not None and loops.angular.max() * damping / stiffness < 0.02:
+def _message(loops, model, method, misfit, lag, lag_known, made, x, stiffness, damping, told):
+    """What the fit leaves, and which other model would leave less or be enough."""
+    floor = solve.noise_floor(loops)
+    said = [f"{model}: the loops are met within {100 * misfit:.2g} % of the r.m.s. force (noise of the mean cycles {100 * floor:.2g} %)"]
+    if misfit > np.hypot(5e-3, 3.0 * floor):
+        better = _better(loops, model, method, None if made.lags else lag, misfit)
+        if better:
+            said.append(f"wrong model: {better} leaves less")
+        elif misfit > np.hypot(_NO_MODEL[method], 3.0 * floor):
+            said.append("wrong model: none of the models here meets these loops")
+        elif method == "energy":
+            said.append("least squares will leave less")
+        else:
+            said.append("that is more than noise, but no other model leaves less")
+    if made.kind == "maxwell" and loops.angular.max() * damping / np.max(stiffness) < 0.02:
         said.append(f"the series stiffness {stiffness:.3g} N/m is too high to matter in these tests: a viscous model is enough")
+    elif made.stiffness_nodes is not None and made.split(x)[1][1:].sum() < _CONSTANT:
+        said.append("the stiffness hardly changes with speed: maxwell, with a constant one, is enough")
     if made.kind == "viscous" and abs(lag) > 5e-4:
         said.append(f"a lag of {1e3 * lag:.2f} ms does here what a series stiffness of {damping / abs(lag):.3g} N/m would do"
                     if lag > 0 else f"the force leads by {-1e3 * lag:.2f} ms")
@@ -281,11 +286,9 @@ def _message(loops, model, misfit, lag, lag_known, made, stiffness, damping, tol
     return "; ".join([*said, *(told.warnings if told else ())])
 
 
-def _better(loops, model, lag, misfit, lags):
-    odd = _is_odd(loops)
+def _better(loops, model, method, given, misfit):
+    """The first costlier model that leaves less than half of the misfit."""
     for other in MODELS[MODELS.index(model) + 1:]:
-        tau = energy.lag_of(loops, odd, _speeds(loops, other))[0] if lags else lag
-        made, x = _start(loops, other, True, odd, tau, lags)
-        if _norm(_misfit(loops, made, x, lag)) < 0.7 * misfit:
+        if _norm(_fitted(loops, other, True, _is_odd(loops), given, method, None, quick=True)[2]) < 0.5 * misfit:
             return other
     return None

@@ -140,7 +140,7 @@ def curve_value(table, at):
     at = np.asarray(at, dtype=float)
     inside = np.clip(at, x[0], x[-1])
     piece = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(c) - 1)
-    t, c = inside - x[piece], c[piece].T
+    t, c = inside - x[piece], np.moveaxis(c[piece], -1, 0)
     slope = c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])
     return c[0] + t * (c[1] + t * (c[2] + t * c[3])) + (at - inside) * slope
 

@@ -36,6 +36,7 @@ class Parametrisation:
     top_force: float
     rising: bool = True
     lags: int = 1
+    lag_unit = _LAG_UNIT
 
     @property
     def sizes(self):
@@ -113,4 +114,4 @@ def damping_nodes(speed, symmetric, count=9):
 
 def stiffness_nodes(velocity):
     """Speeds (m/s) for a stiffness curve."""
-    return np.abs(velocity).max() * np.array([0.0, 0.12, 0.3, 0.6, 1.0])
+    return np.abs(velocity).max() * np.array([0.0, 0.1, 0.22, 0.4, 0.65, 1.0])

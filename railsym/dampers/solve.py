@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Least squares on the loops: misfit of the harmonics, its Jacobian by the linearised bench, and where curves have their nodes.
+
+The steady force of F = k(|v|) (e - s) = D(w), w = ds/dt, changes with the parameters as
+
+    dF = dk (e - s) - k ds,     D'(w) d(ds)/dt = dk (e - s) - k ds - dD(w)
+
+which is linear in ds and periodic. It is stepped here exactly for coefficients constant over a step; the bench itself gives the
+force, so that the error of these steps slows the iteration down but moves its end by no more than that times the misfit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from railsym import _core
+from railsym.dampers.models import curve_value
+from railsym.errors import CoreError
+
+_STEP = 1e-5          # of the logarithms and rises, for the change of curves
+_SOFT = 0.5           # standard deviation of the relative change of slope from node to node
+_LEAST_NOISE = 1e-4   # relative misfit that even smooth data leave
+
+
+def steady(loops, model, state=None):
+    """Force (N) and damper elongation (m) over a cycle of all tests, each (tests, points)."""
+    return _core.bench_cycles(model.force_law_record(), loops.period, loops.displacement, loops.velocity, 2, state)
+
+
+def harmonics_of(loops, force, lag):
+    """Harmonics 1.. of a force (..., tests, points) that is measured ``lag`` (s) late."""
+    orders = loops.harmonics.shape[1]
+    spectrum = 2.0 * np.fft.rfft(force, axis=-1)[..., 1:1 + orders] / force.shape[-1]
+    return spectrum * np.exp(-1j * (1 + np.arange(orders)) * loops.angular[:, None] * np.reshape(lag, (-1, 1)))
+
+
+def _flat(loops, spectrum):
+    """Kept harmonics relative to the r.m.s. force: real and imaginary parts (..., 2 kept)."""
+    part = (spectrum / (np.sqrt(2.0 * len(loops.scale)) * loops.scale[:, None]))[..., loops.kept]
+    return np.concatenate([part.real, part.imag], axis=-1)
+
+
+def misfit(loops, made, x, fixed, state=None):
+    """Harmonics of model less measured, relative to the r.m.s. force; squares sum to the mean square of the tests.
+
+    Infinite where the bench finds no steady cycle.
+    """
+    try:
+        force, _ = steady(loops, made.model(x), state)
+    except CoreError:
+        if state is not None:
+            state[:] = 0.0
+        return np.full(2 * int(loops.kept.sum()), np.inf)
+    return _flat(loops, harmonics_of(loops, force, made.lag(x) if made.lags else fixed) - loops.harmonics)
+
+
+def noise_floor(loops):
+    """Relative misfit that noise leaves in the harmonics."""
+    return float(np.sqrt(np.mean((loops.noise / loops.scale) ** 2 * 2.0 * loops.kept.sum(axis=1) / loops.samples)))
+
+
+def _damping(record, speed):
+    """Force D (N) and slope (N s/m) of the damper's own law."""
+    table = record.get("damping_curve")
+    if table is None:
+        return record["damping"] * speed, np.full_like(speed, record["damping"])
+    x, c = table
+    inside = np.clip(speed, x[0], x[-1])
+    piece = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(c) - 1)
+    t, c = inside - x[piece], np.moveaxis(c[piece], -1, 0)
+    return curve_value(table, speed) + record["damping"] * speed, c[1] + t * (2.0 * c[2] + 3.0 * t * c[3]) + record["damping"]
+
+
+def _stiffness(record, speed):
+    table = record.get("stiffness_curve")
+    return record["stiffness"] + (0.0 if table is None else curve_value(table, np.abs(speed)))
+
+
+def own_speed(record, force):
+    """Speed (m/s) of the damper at a force: D turned round by a dense table."""
+    if record.get("damping_curve") is None:
+        return force / record["damping"]
+    x = record["damping_curve"][0]
+    fine = np.linspace(-1.0, 1.0, 2001)
+    fine = np.where(fine < 0.0, -x[0], x[-1]) * fine * np.abs(fine)
+    ends = [10.0 * x[0], 10.0 * x[-1]]
+    speed = np.concatenate([ends[:1], fine, ends[1:]])
+    return np.interp(force, _damping(record, speed)[0], speed)
+
+
+def jacobian(loops, made, x, fixed, state=None):
+    """Slopes of `misfit` (2 kept, unknowns)."""
+    record = made.model(x).force_law_record()
+    force, s = steady(loops, made.model(x), state)
+    count_d, count_k, _ = made.sizes
+    speed = loops.velocity if made.kind == "viscous" else own_speed(record, force)
+    changed = [made.model(x + _STEP * unit).force_law_record() for unit in np.eye(x.size)[:count_d + count_k]]
+    base = _damping(record, speed)[0]
+    d_damping = np.array([(_damping(one, speed)[0] - base) / _STEP for one in changed[:count_d]])
+    if made.kind == "viscous":
+        change = d_damping
+    else:
+        stiffness = _stiffness(record, loops.velocity) + np.zeros_like(force)
+        d_stiffness = np.array([(_stiffness(one, loops.velocity) - stiffness) / _STEP for one in changed[count_d:]])
+        spring = np.concatenate([np.zeros_like(d_damping), d_stiffness * (loops.displacement - s)])
+        target = (spring - np.concatenate([d_damping, np.zeros_like(spring[count_d:])])) / stiffness
+        change = spring - stiffness * _periodic(target, stiffness / np.maximum(_damping(record, speed)[1], 1e-3), loops.period)
+    lag = made.lag(x) if made.lags else fixed
+    columns = _flat(loops, harmonics_of(loops, change, lag))
+    if not made.lags:
+        return columns.T
+    turning = -1j * (1 + np.arange(loops.harmonics.shape[1])) * loops.angular[:, None]
+    turned = _flat(loops, harmonics_of(loops, force, lag) * turning * made.lag_unit)
+    return np.concatenate([columns, turned[None]]).T
+
+
+def _periodic(target, rate, period):
+    """Periodic solution of dy/dt = rate (target - y): target (unknowns, tests, points), rate (tests, points) in 1/s."""
+    points = rate.shape[1]
+    middle = 0.5 * (rate + np.roll(rate, -1, axis=1))
+    keep = np.exp(-middle * (period / points)[:, None])
+    gain = (1.0 - keep) * 0.5 * (target + np.roll(target, -1, axis=2))
+    out = np.zeros_like(target)
+    now = np.zeros(target.shape[:2])
+    for k in range(points):
+        out[:, :, k] = now
+        now = keep[:, k] * now + gain[:, :, k]
+    product = np.cumprod(keep, axis=1)
+    start = now / np.maximum(1.0 - product[:, -1], 1e-9)
+    return out + start[:, :, None] * np.concatenate([np.ones((len(keep), 1)), product[:, :-1]], axis=1)
+
+
+def _roughness(made, x, weight):
+    """A weak wish for slopes of the curves that change little from node to node: it decides where the tests do not."""
+    rows = []
+    damping, stiffness, _ = made.split(x)
+    if made.damping_nodes is not None:
+        slope = damping / np.diff(made.damping_nodes)
+        rows.append((slope[1:] - slope[:-1]) / (slope[1:] + slope[:-1]))
+    if made.stiffness_nodes is not None:
+        slope = stiffness[1:] / np.diff(made.stiffness_nodes) * made.stiffness_nodes[-1]
+        rows.append(slope[1:] - slope[:-1])
+    return weight / _SOFT * np.concatenate(rows) if rows else np.zeros(0)
+
+
+def _weight(loops):
+    """Size of the error of one entry of the misfit."""
+    return max(noise_floor(loops), _LEAST_NOISE) / np.sqrt(2.0 * loops.kept.sum())
+
+
+def evidence(loops, made, x, fixed):
+    """Slopes of the misfit and, below them, of the wish for smooth curves."""
+    own, weight = _roughness(made, x, _weight(loops)), _weight(loops)
+    rows = np.array([(_roughness(made, x + _STEP * unit, weight) - own) / _STEP for unit in np.eye(x.size)]).T
+    return np.concatenate([jacobian(loops, made, x, fixed), rows])
+
+
+def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False):
+    """Least squares from ``x``; its parametrisation and vector."""
+    from scipy.optimize import least_squares
+
+    low, high = made.bounds(bounds)
+    state = np.zeros_like(loops.force)
+    weight = _weight(loops)
+
+    def function(p):
+        return np.concatenate([misfit(loops, made, p, fixed, state), _roughness(made, p, weight)])
+
+    x = np.clip(x, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
+    if not np.isfinite(function(x)).all():
+        return made, x
+    tolerance = 1e-3 if quick else 1e-6
+    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed), bounds=(low, high), x_scale="jac", ftol=tolerance, xtol=0.1 * tolerance, gtol=1e-12,
+                          max_nfev=most, verbose=2 if progress else 0)
+    return made, found.x
+
+
+def with_better_nodes(loops, made, x, count=11):
+    """The same damping curve with nodes over the speeds that the damper has in these tests, denser where it bends."""
+    model = made.model(x)
+    record = model.force_law_record()
+    try:
+        force = steady(loops, model)[0]
+    except CoreError:
+        return made, x
+    speed = loops.velocity if made.kind == "viscous" else own_speed(record, force)
+    if made.damping_nodes[0] == 0.0:
+        nodes = _spread(record, np.abs(speed).max(), count)
+    else:
+        nodes = np.concatenate([_spread(record, speed.min(), count)[:0:-1], _spread(record, speed.max(), count)])
+    damping, stiffness, lag = made.split(x)
+    value = _damping(record, nodes)[0]
+    moved = replace(made, damping_nodes=nodes)
+    return moved, np.concatenate([moved.vector(value, np.ones(max(len(stiffness), 1)), 0.0)[:len(nodes) - 1], stiffness, lag])
+
+
+def _spread(record, end, count):
+    """Nodes from 0 to ``end``: equal shares of speed (towards rest), of force and of bend."""
+    fine = np.linspace(0.0, 1.0, 401) ** 2
+    force, slope = _damping(record, fine * end)
+    share = fine ** (1.0 / 1.6) + np.abs(force / force[-1])
+    bend = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(np.log(np.maximum(slope, 1e-3 * slope.max())))))])
+    share = share + 0.7 * bend / max(bend[-1], 1.0)
+    nodes = np.interp(np.linspace(0.0, share[-1], count), share, fine)
+    nodes[0], nodes[-1] = 0.0, 1.0
+    return end * nodes
