@@ -11,6 +11,7 @@ coordinates relative to one body.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -21,6 +22,8 @@ _ROUNDING = 1e-9
 # uniform speed as an eigenvector: bodies' speeds alike to this, and a time constant above 100 s
 _ALIKE = 1e-2
 _SLOW = 1e-2
+
+_faster_states = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +97,14 @@ def deflate(model: LinearModel, speed: float, known: int | None = None) -> Defla
     return Deflated(rest, np.column_stack([place, faster / rate]), np.array([0.0, own]), (step, second))
 
 
+def chain_length(model: LinearModel, speed: float) -> int:
+    """Number of constant-speed motions of a model, 0, 1 or 2."""
+    translation = model.uniform_translation
+    if translation is None or not translation.any():
+        return 0
+    return deflate(model, speed).chain.shape[1]
+
+
 def _is_null(matrix, vector) -> bool:
     size = np.abs(matrix) @ np.abs(vector)
     return bool((np.abs(matrix @ vector) <= _ROUNDING * size).all())
@@ -116,7 +127,13 @@ def _eliminate(matrix, vector, own):
 
 
 def _uniform_speed(model: LinearModel, translation):
-    """State of all bodies 1 m/s faster, wheels turning faster so that they do not creep."""
+    """State of all bodies 1 m/s faster, wheels turning faster so that they do not creep; the same at any speed."""
+    if model not in _faster_states:
+        _faster_states[model] = _faster_state(model, translation)
+    return _faster_states[model]
+
+
+def _faster_state(model: LinearModel, translation):
     rate = translation.copy()
     if model.cyclic.any():
         turning = model.damping_inverse_speed[:, model.cyclic]

@@ -167,13 +167,8 @@ def contact_or_default(contact):
 
 
 def linear_models(vehicle, contact, conicities):
-    """Linear models of one vehicle for several conicities, one after another; the left-right mirroring is found once."""
+    """Linear models of one vehicle for several conicities, one after another."""
     from railsym.linear import linear_model
-    from railsym.symmetry import find_mirror
 
-    mirror = None
     for conicity in conicities:
-        model = linear_model(vehicle, replace(contact, conicity=float(conicity)))
-        if mirror is None:
-            mirror = find_mirror(model)
-        yield model if mirror is None else replace(model, mirror=mirror)
+        yield linear_model(vehicle, replace(contact, conicity=float(conicity)))

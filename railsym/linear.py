@@ -9,8 +9,7 @@ are taken one by one, and only the wheel-rail part is computed anew for another 
 """
 
 from dataclasses import replace
-from functools import cached_property
-from weakref import WeakKeyDictionary
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -21,7 +20,8 @@ from railsym.errors import ModelError
 from railsym.linear_model import Linearisation, LinearModel
 from railsym.model import Model, input_table, set_wheels
 
-_rolling_vehicles = WeakKeyDictionary()
+# vehicles that stay assembled: a rolling vehicle holds its vehicle, so weak keys would keep all of them, a megabyte each
+_KEPT = 16
 
 
 class RollingVehicle:
@@ -89,12 +89,10 @@ class RollingVehicle:
         return replace(structure, stiffness=stiffness, damping_inverse_speed=with_inverse, contact=contact, base=structure)
 
 
+@lru_cache(maxsize=_KEPT)
 def rolling_vehicle(vehicle):
-    """The RollingVehicle of a vehicle, built once as long as the vehicle lives."""
-    known = _rolling_vehicles.get(vehicle)
-    if known is None:
-        known = _rolling_vehicles[vehicle] = RollingVehicle(vehicle)
-    return known
+    """The RollingVehicle of a vehicle, built once for the vehicles used last."""
+    return RollingVehicle(vehicle)
 
 
 def linear_model(vehicle, contact=None):

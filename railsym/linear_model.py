@@ -18,7 +18,7 @@ import numpy as np
 
 from railsym.errors import ModelError
 
-_MATRICES = ("mass", "stiffness", "damping_constant", "damping_speed", "damping_inverse_speed")
+MATRICES = ("mass", "stiffness", "damping_constant", "damping_speed", "damping_inverse_speed")
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class LinearModel:
 
     def __post_init__(self):
         n = len(self.coordinates)
-        for name in _MATRICES:
+        for name in MATRICES:
             matrix = getattr(self, name)
             if matrix is getattr(self.base, name, None):
                 continue  # looked at when the base was made
@@ -123,6 +123,16 @@ class LinearModel:
     def dynamic_stiffness_slope(self, eigenvalue: complex, speed: float) -> np.ndarray:
         """dT/dlambda = 2 lambda M + C(V), complex, shape (n, n)."""
         return 2 * eigenvalue * self.mass + self.damping(speed)
+
+    @cached_property
+    def entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rows and columns (k,) in which any matrix has an entry, and those of M, C0, C1, C2 and K there, shape (5, k)."""
+        matrices = self.mass, self.damping_constant, self.damping_speed, self.damping_inverse_speed, self.stiffness
+        filled = matrices[0] != 0.0
+        for matrix in matrices[1:]:
+            filled |= matrix != 0.0
+        flat = np.flatnonzero(filled)
+        return *np.divmod(flat, self.size), np.array([matrix.ravel()[flat] for matrix in matrices])
 
     def state_matrix(self, speed: float) -> np.ndarray:
         """A of x' = A x at a speed in m/s, shape (ns, ns), rows as `states`; a fresh array on every call."""

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -15,6 +17,8 @@ LATERAL = ("y", "yaw", "roll")
 _MOTION = {"x": "surge", "y": "lateral", "z": "bounce", "yaw": "yaw", "roll": "roll", "pitch": "pitch", "spin": "spin"}
 _MOST = 0.75          # share of the energy that makes one bogie or wheelset "the" moving one
 _REAL = 1e-9          # |Im| / |lambda| of a real eigenvalue
+
+_labels_of_bases = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +51,18 @@ class MotionLabels:
         unit = self._running_units()
         self.mass = model.mass[self.moving[:, None], self.moving]
         self.units = {"bogies": self._sorted_units(unit), "wheelsets": self._sorted_units(self.owner)}
+
+    @classmethod
+    def of(cls, model: LinearModel) -> MotionLabels:
+        """Labels of a model; what the vehicle without its contact decides is worked out once a vehicle."""
+        if model.base is None:
+            return cls(model)
+        if model.base not in _labels_of_bases:
+            known = _labels_of_bases[model.base] = cls(model.base)
+            known.model = None          # would keep its own key alive
+        labels = copy(_labels_of_bases[model.base])
+        labels.model = model
+        return labels
 
     def _sorted_units(self, units):
         """Unit of each coordinate, and the names of the units of the running gear from the front to the rear."""

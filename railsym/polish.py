@@ -130,49 +130,78 @@ def _failed(what, steps, speed, eigenvalue):
 
 
 class _Bordered:
-    """The bordered system in coordinates scaled to like size, with borders that follow the vectors."""
+    """The bordered system in coordinates scaled to like size, with borders that follow the vectors.
+
+    Of the matrices only the entries that are not zero are kept, each as its share in M, C0, C1, C2 and K.
+    """
 
     def __init__(self, model: LinearModel, eigenvalue, speed, right, left):
-        self.model = model
-        stiff = np.abs(eigenvalue**2 * model.mass.diagonal() + eigenvalue * model.damping(speed).diagonal()
-                       + model.stiffness.diagonal())
-        self.scale = 1.0 / np.sqrt(np.where(stiff > 0, stiff, 1.0))
-        both = self.scale[:, None] * self.scale
-        self.mass, self.stiffness = model.mass * both, model.stiffness * both
-        self.constant, self.with_speed = model.damping_constant * both, model.damping_speed * both
-        self.with_inverse_speed = model.damping_inverse_speed * both
-        self.right, self.left = _unit(right / self.scale), _unit(left / self.scale)
+        self.row, self.column, entries = model.entries
+        diagonal = self.row == self.column
+        stiff = np.zeros(model.size)
+        stiff[self.row[diagonal]] = np.abs(_factors(eigenvalue, speed) @ entries[:, diagonal])
+        scale = 1.0 / np.sqrt(np.where(stiff > 0, stiff, 1.0))
+        self.entries = entries * (scale[self.row] * scale[self.column])
+        self.scale, self.right, self.left = scale, _unit(right / scale), _unit(left / scale)
 
     def solve(self, eigenvalue, speed):
-        """g, dg/dlambda and dg/dV; keeps the vectors."""
-        from scipy.linalg.lapack import zgetrf, zgetrs
+        """g, dg/dlambda and dg/dV; keeps the vectors and the factors."""
+        from scipy.linalg.lapack import zgetrf
 
-        n, square = self.model.size, eigenvalue**2
-        damping = self.constant + speed * self.with_speed + self.with_inverse_speed / speed
+        n = len(self.scale)
         matrix = np.zeros((n + 1, n + 1), dtype=complex, order="F")
-        matrix.real[:n, :n] = square.real * self.mass + eigenvalue.real * damping + self.stiffness
-        matrix.imag[:n, :n] = square.imag * self.mass + eigenvalue.imag * damping
+        matrix[self.row, self.column] = _factors(eigenvalue, speed) @ self.entries
         matrix[:n, n], matrix[n, :n] = self.left, self.right.conj()
-        factors, pivots, status = zgetrf(matrix, overwrite_a=True)
+        *self.factors, status = zgetrf(matrix, overwrite_a=True)
         if status:
             raise _failed("eigenvalue", 0, speed, eigenvalue)
         last = np.zeros(n + 1, dtype=complex)
         last[n] = 1.0
-        solution, adjoint = (zgetrs(factors, pivots, last, trans=transposed)[0] for transposed in (0, 2))
+        solution, adjoint = self._back(last, 0), self._back(last, 2)
         x, y = solution[:n], adjoint[:n]
         self.right, self.left = _unit(x), _unit(y)
-        by_eigenvalue = -(y.conj() @ (2 * eigenvalue * (self.mass @ x) + damping @ x))
-        by_speed = -eigenvalue * (y.conj() @ (self.with_speed @ x - self.with_inverse_speed @ x / speed**2))
-        return solution[n], by_eigenvalue, by_speed
+        return solution[n], *self._slopes(eigenvalue, speed, x, y)
+
+    def _back(self, side, transposed):
+        """Solution of the factorised system, or of its conjugate transpose (2)."""
+        from scipy.linalg.lapack import zgetrs
+
+        return zgetrs(*self.factors, side, trans=transposed)[0]
+
+    def _slopes(self, eigenvalue, speed, x, y):
+        """-y^H (dT/dlambda) x and -y^H (dT/dV) x."""
+        inertia, constant, with_speed, with_inverse_speed, _ = self.entries @ (y.conj()[self.row] * x[self.column])
+        by_eigenvalue = 2 * eigenvalue * inertia + constant + speed * with_speed + with_inverse_speed / speed
+        return -by_eigenvalue, -eigenvalue * (with_speed - with_inverse_speed / speed**2)
 
     def point(self, eigenvalue, speed, steps) -> EigenPoint:
-        """The converged point, its vectors scaled to y^H T' x = 1."""
-        _, by_eigenvalue, by_speed = self.solve(eigenvalue, speed)
-        x, y = self.scale * self.right, self.scale * self.left
-        matrix = self.model.dynamic_stiffness(eigenvalue, speed)
-        residual = (np.abs(matrix @ x) / np.maximum(np.abs(matrix) @ np.abs(x), 1e-300)).max()
-        norm = y.conj() @ (self.model.dynamic_stiffness_slope(eigenvalue, speed) @ x)
-        return EigenPoint(speed, complex(eigenvalue), x, y / norm.conj(), complex(-by_speed / by_eigenvalue), float(residual), steps)
+        """The converged point, its vectors scaled to y^H T' x = 1.
+
+        The vectors belong to the point before the last step: one correction with the factors of that point leaves an error of the
+        order of the step squared, which is rounding.
+        """
+        entries = _factors(eigenvalue, speed) @ self.entries
+        x = self._corrected(self.right, entries, self.row, self.column, 0)
+        y = self._corrected(self.left, entries.conj(), self.column, self.row, 2)
+        by_eigenvalue, by_speed = self._slopes(eigenvalue, speed, x, y)
+        size = np.bincount(self.row, np.abs(entries) * np.abs(x)[self.column], len(x))
+        residual = (np.abs(self._product(entries, x, self.row, self.column)) / np.maximum(size, 1e-300)).max()
+        return EigenPoint(speed, complex(eigenvalue), self.scale * x, self.scale * y / -by_eigenvalue.conj(),
+                          complex(-by_speed / by_eigenvalue), float(residual), steps)
+
+    @staticmethod
+    def _product(entries, vector, row, column):
+        terms = entries * vector[column]
+        return np.bincount(row, terms.real, len(vector)) + 1j * np.bincount(row, terms.imag, len(vector))
+
+    def _corrected(self, vector, entries, row, column, transposed):
+        force = np.append(self._product(entries, vector, row, column), 0.0)
+        return _unit(vector - self._back(force, transposed)[:-1])
+
+
+def _factors(eigenvalue, speed):
+    """Factors of M, C0, C1, C2 and K in T(lambda, V)."""
+    return np.array([eigenvalue**2, eigenvalue, eigenvalue * speed, eigenvalue / speed, 1.0])
 
 
 def _unit(vector):

@@ -47,7 +47,7 @@ class Reduction:
 
     def expand(self, shape: np.ndarray) -> np.ndarray:
         """Reduced coordinates (m, ...) as coordinates of the full model (n, ...)."""
-        return self.basis @ shape
+        return _times(self.basis, shape) if shape.ndim == 2 else self.basis @ shape
 
     def correction(self, eigenvalue, speed, right, left):
         """First-order effect of the dropped modes on eigenvalues of the reduced model.
@@ -68,14 +68,21 @@ class Reduction:
         missing : ndarray, shape (n, k)
             What the dropped modes add to the full shapes.
         """
-        x, y = self.expand(right), self.expand(left)
-        full, damping, modes = self.full, self.full.damping(speed), self.dropped
-        residual = full.mass @ (x * eigenvalue**2) + damping @ (x * eigenvalue) + full.stiffness @ x
-        left_residual = (full.mass.T @ (y * eigenvalue.conj()**2) + damping.T @ (y * eigenvalue.conj()) + full.stiffness.T @ y)
-        amplitude = -(modes.T @ residual) / (self.dropped_stiffness[:, None] + eigenvalue**2)
-        slope = ((full.mass @ (x * (2 * eigenvalue)) + damping @ x) * y.conj()).sum(axis=0)
-        change = -((modes.T @ left_residual).conj() * amplitude).sum(axis=0) / slope
-        return change, modes @ amplitude
+        x, y, conjugate = self.expand(right), self.expand(left), eigenvalue.conj()
+        full, reduced, modes = self.full, self.model, self.dropped
+        mass, damping, stiffness = full.mass, full.damping(speed), full.stiffness
+        residual = _times(mass, x * eigenvalue**2) + _times(damping, x * eigenvalue) + _times(stiffness, x)
+        left_residual = _times(mass.T, y * conjugate**2) + _times(damping.T, y * conjugate) + _times(stiffness.T, y)
+        amplitude = -_times(modes.T, residual) / (self.dropped_stiffness[:, None] + eigenvalue**2)
+        slope = ((reduced.mass @ (right * (2 * eigenvalue)) + reduced.damping(speed) @ right) * left.conj()).sum(axis=0)
+        change = -(_times(modes.T, left_residual).conj() * amplitude).sum(axis=0) / slope
+        return change, _times(modes, amplitude)
+
+
+def _times(matrix, values):
+    """Real matrix times complex values, without a complex copy of the matrix."""
+    parts = matrix @ np.hstack([values.real, values.imag])
+    return parts[:, :values.shape[1]] + 1j * parts[:, values.shape[1]:]
 
 
 def reduce_model(model: LinearModel, frequency_limit: float, extra: np.ndarray | None = None) -> Reduction:

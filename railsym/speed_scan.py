@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from railsym.constant_speed import deflate
+from railsym.constant_speed import chain_length, deflate
 from railsym.errors import ConvergenceError
 from railsym.linear_model import LinearModel
 from railsym.polish import EigenPoint, polish_crossing, polish_eigenvalue
@@ -152,8 +152,8 @@ class SpeedScan:
         right, left = deflated.restore(value, right, left)
         left = left / (left.conj() * right).sum(axis=0).conj()
         x, y = reduced.shape_vector(right, value), reduced.left_vector(left)
-        loss = ((2 * value * (reduced.mass @ x) + reduced.damping(speed) @ x) * y.conj()).sum(axis=0)
-        slope = -value * ((reduced.damping_slope(speed) @ x) * y.conj()).sum(axis=0) / loss * speed
+        # y^H (dT/dlambda) x is the product of the two states, so 1
+        slope = -value * ((reduced.damping_slope(speed) @ x) * y.conj()).sum(axis=0) * speed
         return ScanNode(float(speed), value, slope, right, left, x, y, divergent)
 
     def follow(self, first, second, paths):
@@ -227,8 +227,7 @@ def scan_speeds(model: LinearModel, damping_ratios, speed_range, frequency_limit
     """
     low, high = np.log(speed_range)
     speeds = np.exp(np.linspace(low, high, 1 + max(1, int(np.ceil((high - low) / _FIRST_STEP)))))
-    known = deflate(model, speed_range[0]).chain.shape[1]
-    scan = SpeedScan(model, reduce_model(model, frequency_limit), tuple(damping_ratios), known)
+    scan = SpeedScan(model, reduce_model(model, frequency_limit), tuple(damping_ratios), chain_length(model, speed_range[0]))
     nodes = _first_nodes(scan, speeds)
     scan.nodes.append(nodes[0])
     paths = np.arange(len(nodes[0].eigenvalue))
@@ -309,21 +308,26 @@ def examine(first: ScanNode, second: ScanNode, pairs, damping_ratios, paths):
     size = np.minimum(np.abs(first.eigenvalue[i]), np.abs(second.eigenvalue[j]))
     credible = ((kink < _SMOOTH * size) & (similarity[keep] > _SIMILAR)) | (kink < _CLEAR * size)
     resolved, crossings = not unpaired and bool(credible.all()), []
-    values = _at(coefficients, _GRID[:, None])
-    for damping_ratio in damping_ratios:
-        g = excess(values, damping_ratio)
-        g[np.abs(g) <= _NEUTRAL * np.abs(values)] = 0.0
-        changes = np.sign(g[1:]) * np.sign(g[:-1]) < 0
-        count, nearest = changes.sum(axis=0), np.abs(g).min(axis=0)
-        ends = np.minimum(np.abs(g[0]), np.abs(g[-1]))
-        grazing = (count == 0) & (nearest < ends) & (nearest < 0.25 * kink)
-        resolved = resolved and not grazing.any() and not (count > 1).any()
-        for k, path in zip(*np.nonzero(changes)):
-            t = _GRID[k] + (_GRID[k + 1] - _GRID[k]) * g[k, path] / (g[k, path] - g[k + 1, path])
-            crossings.append(Crossing(damping_ratio, int(np.sign(g[k + 1, path])), first.position + t * (second.position - first.position),
-                                      complex(_at(coefficients[:, path], t)), int(paths[i[path]]),
-                                      ((first, i[path]), (second, j[path]))))
+    g = _excesses(_at(coefficients, _GRID[:, None]), damping_ratios)
+    far = np.abs(g)
+    changes = g[:, 1:] * g[:, :-1] < 0
+    count, nearest = changes.sum(axis=1), far.min(axis=1)
+    grazing = (count == 0) & (nearest < np.minimum(far[:, 0], far[:, -1])) & (nearest < 0.25 * kink)
+    resolved = resolved and not (grazing | (count > 1)).any()
+    for c, k, path in zip(*np.nonzero(changes)):
+        before, after = g[c, k, path], g[c, k + 1, path]
+        t = _GRID[k] + (_GRID[k + 1] - _GRID[k]) * before / (before - after)
+        crossings.append(Crossing(damping_ratios[c], int(np.sign(after)), first.position + t * (second.position - first.position),
+                                  complex(_at(coefficients[:, path], t)), int(paths[i[path]]), ((first, i[path]), (second, j[path]))))
     return resolved, crossings
+
+
+def _excesses(values, damping_ratios):
+    """Excess of paths (points, paths) over each damping ratio, (ratios, points, paths); what is rounding is zero."""
+    size = np.abs(values)
+    g = values.real + np.array(damping_ratios)[:, None, None] * size
+    g[np.abs(g) <= _NEUTRAL * size] = 0.0
+    return g
 
 
 def _cubics(first, second, i, j):

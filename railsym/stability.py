@@ -132,7 +132,7 @@ def stability(model: LinearModel, damping_ratios: Sequence[float] = (0.0,), spee
     """
     _check(damping_ratios, speed_range, frequency_band)
     ratios = tuple(dict.fromkeys((0.0,) + tuple(damping_ratios)))
-    parts, labels = split(model), MotionLabels(model)
+    parts, labels = split(model), MotionLabels.of(model)
     limit = max(_BASIS * frequency_band[1], _LEAST_BASIS)
     for _ in range(_REPEATS):
         lateral, others = _scan_parts(parts, ratios, speed_range, limit)

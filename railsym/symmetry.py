@@ -8,17 +8,21 @@ do not see each other, and two problems of half the size replace one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from railsym.linear_model import LinearModel
+from railsym.linear_model import MATRICES, LinearModel
 
 # sign of a coordinate under y -> -y: vectors turn their y, axial vectors their x and z components
 _SIGN = {"x": 1.0, "y": -1.0, "z": 1.0, "yaw": -1.0, "roll": -1.0, "pitch": 1.0, "spin": 1.0}
 _PLACE = 1e-6               # m, two positions that differ less are one
 _DIFFERENCE = 1e-9          # of the largest entry in a row: assembling in another order moves the last digits only
 _ROUNDING = 1e-14           # of the largest entry of a matrix
+
+_mirrors_of_bases = WeakKeyDictionary()
+_halves_of_bases = WeakKeyDictionary()        # (antisymmetric, symmetric) LinearModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,16 +77,25 @@ def split(model: LinearModel) -> tuple[Part, ...]:
     if mirror is None:
         index, one = np.arange(model.size), np.ones(model.size)
         return (Part(model, 0, index, index, one, 0 * one, model),)
-    return tuple(_part(model, mirror, parity) for parity in (-1, 1))
+    if model.base is None or mirror is not _mirrors_of_bases.get(model.base):
+        return tuple(_part(model, mirror, parity) for parity in (-1, 1))
+    if model.base not in _halves_of_bases:
+        _halves_of_bases[model.base] = [_part(model.base, mirror, parity).model for parity in (-1, 1)]
+    return tuple(_part(model, mirror, half_parity, half) for half_parity, half in zip((-1, 1), _halves_of_bases[model.base]))
 
 
 def find_mirror(model: LinearModel) -> tuple[np.ndarray, np.ndarray] | None:
     """Permutation and signs of the mirroring that all matrices commute with, or None."""
-    mirror = model.mirror if model.mirror is not None else _mirror_of_vehicle(model)
-    if mirror is None:
-        return None
-    matrices = (model.stiffness, model.mass, model.damping_constant, model.damping_speed, model.damping_inverse_speed)
-    return mirror if all(_commutes(matrix, *mirror) for matrix in matrices) else None
+    names = MATRICES
+    if model.mirror is None and model.base is not None:
+        # contact keeps the coordinates and most matrices: those were looked at when the base was
+        if model.base not in _mirrors_of_bases:
+            _mirrors_of_bases[model.base] = find_mirror(model.base)
+        mirror = _mirrors_of_bases[model.base]
+        names = [name for name in MATRICES if getattr(model, name) is not getattr(model.base, name)]
+    else:
+        mirror = model.mirror if model.mirror is not None else _mirror_of_vehicle(model)
+    return mirror if mirror is not None and all(_commutes(getattr(model, name), *mirror) for name in names) else None
 
 
 def _commutes(matrix, permutation, sign) -> bool:
@@ -96,7 +109,8 @@ def _commutes(matrix, permutation, sign) -> bool:
     return bool((np.abs(image - value) <= allowed[row]).all())
 
 
-def _part(model: LinearModel, mirror, parity: int) -> Part:
+def _part(model: LinearModel, mirror, parity: int, base: LinearModel | None = None) -> Part:
+    """One half of a model; where the same half of its base is known, only what the contact changes is folded."""
     permutation, sign = mirror
     index = np.arange(model.size)
     keep = (index < permutation) | ((index == permutation) & (sign == parity))
@@ -111,11 +125,14 @@ def _part(model: LinearModel, mirror, parity: int) -> Part:
         columns = rows[:, first] * weight_first + rows[:, second] * weight_second
         return columns / weight_first[:, None]
 
+    if base is not None:
+        changed = {name: folded(getattr(model, name)) for name in MATRICES if getattr(model, name) is not getattr(model.base, name)}
+        half = replace(base, **changed, contact=model.contact, base=base)
+        return Part(half, parity, first, second, weight_first, weight_second, model)
     translation = model.uniform_translation
     if translation is not None:
         translation = weight_first * translation[first] + weight_second * translation[second]
-    part = LinearModel(tuple(model.coordinates[i] for i in first), folded(model.mass), folded(model.stiffness),
-                       folded(model.damping_constant), folded(model.damping_speed), folded(model.damping_inverse_speed),
+    part = LinearModel(tuple(model.coordinates[i] for i in first), *(folded(getattr(model, name)) for name in MATRICES),
                        model.first_order[first], model.cyclic[first], model.vehicle, model.contact,
                        translation=np.zeros(len(first)) if translation is None else translation)
     return Part(part, parity, first, second, weight_first, weight_second, model)
