@@ -68,6 +68,10 @@ class Loops:
         """The loop of one test."""
         return replace(self, **{name: getattr(self, name)[test:test + 1] for name in self.__dataclass_fields__})
 
+    def coarse(self, step=4):
+        """Every so many points; 64 points a cycle are enough for 31 harmonics."""
+        return replace(self, displacement=self.displacement[:, ::step], velocity=self.velocity[:, ::step], force=self.force[:, ::step])
+
     @property
     def _clear(self):
         """Harmonics that stand out of the noise; the others would only make the damper's speed noisy."""
@@ -145,7 +149,8 @@ def constants(loops, lag=None, viscous=False):
         best = int(np.argmin(left))
         if width < 1e-6:
             return np.inf if viscous else 1.0 / float(compliance[best]), 1.0 / float(fluidity[best]), float(lags[best])
-        lags, width = lags[best] + np.linspace(-width, width, 41), 0.1 * width
+        lags = np.clip(lags[best] + np.linspace(-width, width, 41), -LARGEST_LAG, LARGEST_LAG)
+        width *= 0.1
 
 
 def stored(loops, stiffness_nodes=None, symmetric=True, linear=False):
@@ -155,14 +160,14 @@ def stored(loops, stiffness_nodes=None, symmetric=True, linear=False):
     """
     bases = _resistances(loops, symmetric) if not linear else [loops.force]
     weight = 1.0 / np.sqrt(np.mean(loops.displacement**2, axis=1))[:, None]
-    columns = [integral(basis, loops.period) for basis in bases]
+    columns = integral(np.array(bases), loops.period)
     if stiffness_nodes is None:
         spring = [loops.force]
     else:
         spring = [part * loops.force for part in hats(np.abs(loops.velocity), stiffness_nodes)]
         spring = [part - part.mean(axis=1, keepdims=True) for part in spring]
-    table = np.array([(part * weight)[:, ::4].ravel() for part in (*spring, *columns)])
-    wanted = (loops.displacement * weight)[:, ::4].ravel()
+    table = np.array([(part * weight).ravel() for part in (*spring, *columns)])
+    wanted = (loops.displacement * weight).ravel()
     size = np.sqrt(np.sum(table**2, axis=1)) + 1e-300
     table = table / size[:, None]
     normal = table @ table.T + 1e-10 * np.eye(len(table))
@@ -182,7 +187,8 @@ def _resistances(loops, symmetric):
 
 def lag_of(loops, symmetric=True, stiffness_nodes=None, linear=False):
     """Lag (s) of the force, where the misfit of the stored elongation is least, and that misfit."""
-    grid = np.linspace(-LARGEST_LAG, LARGEST_LAG, 21)
+    loops = loops.coarse()
+    grid = np.linspace(-LARGEST_LAG, LARGEST_LAG, 15)
     misfit = [stored(loops.shifted(lag), stiffness_nodes, symmetric, linear) for lag in grid]
     # A compliance below zero is no spring: such a lag is out of question.
     value = [m if np.sum(j) > 0.0 else np.inf for j, m in misfit]
@@ -193,7 +199,7 @@ def lag_of(loops, symmetric=True, stiffness_nodes=None, linear=False):
         return 0.0, stored(loops, stiffness_nodes, symmetric, linear)[1]
     lo, hi = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
     best = minimize_scalar(lambda lag: stored(loops.shifted(lag), stiffness_nodes, symmetric, linear)[1], bounds=(lo, hi), method="bounded",
-                           options={"xatol": 2e-6, "maxiter": 25})
+                           options={"xatol": 1e-5, "maxiter": 20})
     return float(best.x), float(best.fun)
 
 

@@ -137,7 +137,7 @@ def identify(records, model="maxwell", method="least_squares", bounds=None, prog
         found = _fitted(loops, model, curve, odd, given, method, bounds, progress)
         if best is None or _norm(found[2]) < 0.8 * _norm(best[2]):
             best = found
-        if _norm(best[2]) < np.hypot(_GOOD, 2.0 * solve.noise_floor(loops)):
+        if _norm(best[2]) < np.hypot(_GOOD, 1.3 * solve.noise_floor(loops)):
             break
     return _result(cleaned, loops, best, fixed, model, method, bounds, free_lag or lag != "auto", started)
 
@@ -191,10 +191,10 @@ def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, qui
             if curve and not quick:
                 made, x = solve.with_better_nodes(loops, made, x)
                 made, x = solve.refine(loops, made, x, fixed, bounds, progress)
-        found = made, x, solve.misfit(loops, made, x, fixed)
+        found = made, x, solve.misfit(loops.coarse(2) if method == "energy" else loops, made, x, fixed)
         if best is None or _norm(found[2]) < _norm(best[2]):
             best = found
-        if _norm(best[2]) < np.hypot(_DOUBTFUL, 2.0 * solve.noise_floor(loops)):
+        if _norm(best[2]) < (_NO_MODEL[method] if method == "energy" else np.hypot(_DOUBTFUL, 2.0 * solve.noise_floor(loops))):
             break
     return best
 
@@ -278,7 +278,7 @@ def _message(loops, model, method, misfit, lag, lag_known, made, x, stiffness, d
         said.append(f"the series stiffness {stiffness:.3g} N/m is too high to matter in these tests: a viscous model is enough")
     elif made.stiffness_nodes is not None and made.split(x)[1][1:].sum() < _CONSTANT:
         said.append("the stiffness hardly changes with speed: maxwell, with a constant one, is enough")
-    if made.kind == "viscous" and abs(lag) > 5e-4:
+    if made.kind == "viscous" and abs(lag) > 5e-4 and "wrong model" not in said[-1]:
         said.append(f"a lag of {1e3 * lag:.2f} ms does here what a series stiffness of {damping / abs(lag):.3g} N/m would do"
                     if lag > 0 else f"the force leads by {-1e3 * lag:.2f} ms")
     if not lag_known:

@@ -21,7 +21,9 @@ from railsym.errors import CoreError
 
 _STEP = 1e-5          # of the logarithms and rises, for the change of curves
 _SOFT = 0.5           # standard deviation of the relative change of slope from node to node
-_LEAST_NOISE = 1e-4   # relative misfit that even smooth data leave
+_LEAST_NOISE = 1e-3   # relative misfit that curves of a few nodes leave even without noise
+_STIFFER = 30.0       # times as much smoothness in the first, quick pass: nodes beyond the tests must not run away
+_WIDEST = 1.5         # of the ends' speed: the damper itself is hardly faster
 
 
 def steady(loops, model, state=None):
@@ -150,9 +152,10 @@ def _weight(loops):
     return max(noise_floor(loops), _LEAST_NOISE) / np.sqrt(2.0 * loops.kept.sum())
 
 
-def evidence(loops, made, x, fixed):
+def evidence(loops, made, x, fixed, weight=None):
     """Slopes of the misfit and, below them, of the wish for smooth curves."""
-    own, weight = _roughness(made, x, _weight(loops)), _weight(loops)
+    weight = _weight(loops) if weight is None else weight
+    own = _roughness(made, x, weight)
     rows = np.array([(_roughness(made, x + _STEP * unit, weight) - own) / _STEP for unit in np.eye(x.size)]).T
     return np.concatenate([jacobian(loops, made, x, fixed), rows])
 
@@ -163,7 +166,7 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False):
 
     low, high = made.bounds(bounds)
     state = np.zeros_like(loops.force)
-    weight = _weight(loops)
+    weight = _weight(loops) * (_STIFFER if quick else 1.0)
 
     def function(p):
         return np.concatenate([misfit(loops, made, p, fixed, state), _roughness(made, p, weight)])
@@ -172,7 +175,7 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False):
     if not np.isfinite(function(x)).all():
         return made, x
     tolerance = 1e-3 if quick else 1e-6
-    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed), bounds=(low, high), x_scale="jac", ftol=tolerance, xtol=0.1 * tolerance, gtol=1e-12,
+    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight), bounds=(low, high), x_scale="jac", ftol=tolerance, xtol=0.1 * tolerance, gtol=1e-12,
                           max_nfev=most, verbose=2 if progress else 0)
     return made, found.x
 
@@ -186,6 +189,7 @@ def with_better_nodes(loops, made, x, count=11):
     except CoreError:
         return made, x
     speed = loops.velocity if made.kind == "viscous" else own_speed(record, force)
+    speed = np.clip(speed, -_WIDEST * np.abs(loops.velocity).max(), _WIDEST * np.abs(loops.velocity).max())
     if made.damping_nodes[0] == 0.0:
         nodes = _spread(record, np.abs(speed).max(), count)
     else:
