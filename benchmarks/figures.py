@@ -99,5 +99,41 @@ def sensitivities():
     return [Figure("sensitivity to every parameter", perf_counter() - start, "s", None, f"{len(found)} parameters")]
 
 
+def damper_figures():
+    """Identification from 12 tests of 10 cycles at 1 kHz, of a linear Maxwell damper and of one with curves; the virtual bench."""
+    from railsym import dampers
+
+    curves = dampers.DamperModel("maxwell", damping_curve=([0.0, 0.004, 0.01, 0.02, 0.05], [0.0, 3400.0, 7000.0, 9500.0, 13000.0]),
+                                 series_stiffness_curve=([0.0, 0.01, 0.02, 0.05], [6.2e6, 5.4e6, 4.7e6, 4.2e6]))
+    linear = dampers.DamperModel("maxwell", damping=6e5, series_stiffness=5e6)
+    found = []
+    for word, true, model in (("constants", linear, "maxwell"), ("curves", curves, "maxwell_nonlinear")):
+        tests = _bench_records(true)
+        cleaned = dampers.clean_all(tests)
+        found.append(Figure(f"damper, {word}: clean", 1e3 * median_time(lambda: dampers.clean_all(tests), 5), "ms", None, "12 tests, 10 cycles, 1 kHz, 2 % noise, 3 ms lag"))
+        fast, sharp = (median_time(lambda: dampers.identify(cleaned, model, method), 5) for method in ("energy", "least_squares"))
+        found.append(Figure(f"damper, {word}: energy method", 1e3 * fast, "ms", 50.0, "of cleaned tests"))
+        found.append(Figure(f"damper, {word}: least squares", sharp, "s", 2.0, "of cleaned tests, energy method included"))
+    t = np.arange(200_000) * 1e-4
+    e, v = 1e-3 * np.sin(6.0 * t), 6e-3 * np.cos(6.0 * t)
+    seconds = median_time(lambda: dampers.virtual_bench(curves, t, e, v), 5)
+    return [*found, Figure("virtual bench", t.size / seconds, "steps/s", 1e6, "curves of damping and stiffness", at_least=True)]
+
+
+def _bench_records(model):
+    """Steady tests of a model, with noise in both channels and a late force."""
+    from railsym import dampers
+
+    random, found = np.random.default_rng(1), []
+    for f, a in itertools.product((0.5, 1.0, 2.0, 3.0), (0.5e-3, 1e-3, 2e-3)):
+        t = np.arange(int(10 / f * 1000)) / 1000.0
+        loop = dampers.sweep(model, f, a, samples_per_cycle=1024).force[0, 0]
+        force = np.interp(f * (t - 3e-3) % 1.0, np.arange(1025) / 1024, np.append(loop, loop[0]))
+        e = a * np.sin(2.0 * np.pi * f * t)
+        noisy = [part + 0.02 * np.std(part) * random.standard_normal(t.size) for part in (e, force)]
+        found.append(dampers.Record(t, *noisy, name=f"{f:g} Hz {1e3 * a:g} mm"))
+    return found
+
+
 GROUPS = {"derive": derivation, "import": imports, "linearise": linearisation, "figures": stability_figures,
-          "sensitivity": sensitivities, "creep": creep_figures}
+          "sensitivity": sensitivities, "creep": creep_figures, "damper": damper_figures}

@@ -175,8 +175,8 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False):
     if not np.isfinite(function(x)).all():
         return made, x
     tolerance = 1e-3 if quick else 1e-6
-    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight), bounds=(low, high), x_scale="jac", ftol=tolerance, xtol=0.1 * tolerance, gtol=1e-12,
-                          max_nfev=most, verbose=2 if progress else 0)
+    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight), bounds=(low, high), x_scale="jac", ftol=tolerance,
+                          xtol=0.1 * tolerance, gtol=1e-12, max_nfev=most, verbose=2 if progress else 0)
     return made, found.x
 
 
