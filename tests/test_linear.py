@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The linear model against the assembled pencil, and what its making must leave alone."""
 
+import gc
+import weakref
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +13,7 @@ from railsym.equilibrium import static_preload
 from railsym.errors import ModelError
 from railsym.linear import RollingVehicle, linear_model, linearise
 from railsym.model import Model
+from railsym.symmetry import split
 from railsym.vehicle import load_vehicle, vehicles
 
 MATRICES = ("mass", "stiffness", "damping_constant", "damping_speed", "damping_inverse_speed")
@@ -162,3 +167,27 @@ def test_stiffness_holds_the_geometric_part_of_the_preload():
 def test_speeds_that_nothing_rolls_at(speed):
     with pytest.raises(ModelError, match="a finite speed above 0"):
         linearise(load_vehicle("wheelset"), speed)
+
+
+def test_halves_of_a_contact_share_what_the_vehicle_decides():
+    vehicle = load_vehicle("bogie")
+    models = [linear_model(vehicle, LinearContact(conicity=c)) for c in (0.1, 0.3)]
+    for model in models:
+        alone = replace(model, base=None)
+        for part, same in zip(split(model), split(alone), strict=True):
+            assert part.parity == same.parity
+            for name in MATRICES:
+                assert np.array_equal(getattr(part.model, name), getattr(same.model, name)), name
+            # the state matrix is put together from the base's: rounding only
+            expected = same.model.state_matrix(50.0)
+            assert np.allclose(part.model.state_matrix(50.0), expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
+    assert split(models[0])[0].model.mass is split(models[1])[0].model.mass
+
+
+def test_assembled_vehicles_do_not_pile_up():
+    vehicle = load_vehicle("bogie")
+    first = weakref.ref(linear_model(vehicle).base)
+    for step in range(20):          # more than are kept
+        split(linear_model(vehicle.replace({"vehicle.gravity": 9.81 + 1e-6 * (step + 1)})))
+    gc.collect()
+    assert first() is None
