@@ -8,8 +8,11 @@ import difflib
 import re
 import sys
 
+from railsym.cli_arguments import missing_vehicle, vehicle_first
 from railsym.cli_damper import add_damper
-from railsym.cli_values import CommandError, criterion, numbers, quantity
+from railsym.cli_pair import add_contact
+from railsym.cli_profiles import add_parser as add_profiles
+from railsym.cli_values import CommandError, criterion, numbers
 from railsym.errors import RailsymError
 
 _COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles")
@@ -63,11 +66,20 @@ def _parsed(arguments):
     if arguments and not arguments[0].startswith("-") and arguments[0] not in _COMMANDS:
         raise CommandError(f"there is no command {arguments[0]!r}{_near(arguments[0], _COMMANDS)}; there are {', '.join(_COMMANDS)}")
     parser, commands = _parser()
-    options, unknown = parser.parse_known_args(arguments)
+    taking = _taking_values(commands.choices[arguments[0]]) if arguments and arguments[0] in ("stability", "modes") else {}
+    try:
+        options, unknown = parser.parse_known_args(vehicle_first(arguments, taking))
+    except CommandError as error:
+        raise (missing_vehicle(error, arguments, taking) if "required: VEHICLE" in str(error) else error) from None
     if unknown:
         known = re.findall(r"--[a-z-]+", commands.choices[arguments[0]].format_usage())
         raise CommandError(f"{arguments[0]}: {unknown[0]!r} is no option{_near(unknown[0], known)}; there are {', '.join(known)}")
     return options
+
+
+def _taking_values(command):
+    """Options of a command's parser that may take the word after their value, or after their name: "+" and "?"."""
+    return {name: action.nargs for name, action in command._option_string_actions.items() if action.nargs in ("+", "?")}
 
 
 def _near(name, names):
@@ -86,8 +98,6 @@ def _parser():
     listing = commands.add_parser("vehicles", help="list the vehicles that come along, their bodies and configurations")
     listing.add_argument("--json", nargs="?", const="-", metavar="FILE", help="as JSON, to FILE or standard output")
     listing.set_defaults(run=_run("cli_modes", "list_vehicles"))
-    from railsym.cli_profiles import add_parser as add_profiles
-
     add_profiles(commands, _typed, _add_output)
     return parser, commands
 
@@ -121,7 +131,7 @@ def _add_stability(commands):
     command.add_argument("--criterion", nargs="+", type=_typed(criterion), metavar="CRITERION",
                          help="real_part, damping_ratio=0.05 (default: real_part damping_ratio=0.05 damping_ratio=0.1)")
     command.add_argument("--speed-range", nargs="+", metavar="RANGE", help="speeds to search, such as 20:700km/h (default 18:900km/h)")
-    _add_contact(command)
+    add_contact(command, _typed)
     command.add_argument("--sensitivity", nargs="?", const="data", choices=("data", "places"),
                          help="which parameters matter: masses, stiffnesses, dampings, contact (data, the default) and the "
                               "coordinates of all places too (places); at the middle conicity, by the first criterion")
@@ -138,7 +148,7 @@ def _add_modes(commands):
                          help="200km/h or 55m/s; or lowest:highest:count, such as 50:300:26km/h, to follow the modes")
     command.add_argument("--configuration", metavar="NAME", help="configuration of the vehicle file (default: its first)")
     command.add_argument("--conicity", type=_typed(numbers, "conicity"), metavar="NUMBER", help="equivalent conicity (default 0.2)")
-    _add_contact(command)
+    add_contact(command, _typed)
     command.add_argument("--frequency", type=float, default=20.0, metavar="HZ", help="highest frequency listed (default 20)")
     command.add_argument("--mode", type=int, metavar="NUMBER", help="mode whose shape is drawn (default: the least damped)")
     _add_output(command)
@@ -147,12 +157,6 @@ def _add_modes(commands):
 
 def _add_vehicle(command):
     command.add_argument("vehicle", metavar="VEHICLE", help="name of a vehicle that comes along (railsym vehicles), or a TOML file")
-
-
-def _add_contact(command):
-    command.add_argument("--friction", type=float, metavar="NUMBER", help="friction coefficient (default: that of the configuration)")
-    command.add_argument("--amplitude", type=_typed(quantity, "m", "amplitude"), metavar="LENGTH",
-                         help="lateral amplitude of the quasi-linear creep forces, such as 3mm (default: that of the vehicle file)")
 
 
 def _add_output(command):

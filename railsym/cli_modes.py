@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, save_plot, table, write_json
+from railsym.cli_output import check_plot_path, finite, save_plot, table, write_json
+from railsym.cli_pair import pair_contacts, plain_contact
 from railsym.cli_values import CommandError, numbers, quantity
-from railsym.contact import LinearContact
 from railsym.plots.style import KMH
 from railsym.vehicle import load_vehicle, vehicles
 
@@ -45,14 +46,26 @@ def run(options):
 
     check_plot_path(options.plot)
     vehicle = _configured(load_vehicle(options.vehicle), options.configuration)
+    pair = pair_contacts(options, [vehicle])
+    model = linear_model(vehicle, _contact(options, pair))
+    text = " ".join(options.speed)
+    if pair and options.json != "-":
+        print(pair.title)
+        print(pair.table() + "\n")
+    show = _show_range if ":" in text else _show_one
+    show(vehicle, model, speeds(text), options, {"pair": finite(pair.as_data())} if pair else {})
+
+
+def _contact(options, pair):
+    """The one contact of the modes."""
+    if pair:
+        if len(pair.contacts) != 1:
+            raise CommandError("--amplitude: modes are shown at one amplitude")
+        return pair.contacts[0]
     conicity = np.array([0.2]) if options.conicity is None else options.conicity
     if len(conicity) != 1:
         raise CommandError("--conicity: modes are shown at one conicity")
-    contact = LinearContact(conicity=float(conicity[0]), friction=options.friction, amplitude=options.amplitude)
-    model = linear_model(vehicle, contact)
-    text = " ".join(options.speed)
-    show = _show_range if ":" in text else _show_one
-    show(vehicle, model, speeds(text), options)
+    return replace(plain_contact(options), conicity=float(conicity[0]))
 
 
 def _configured(vehicle, name):
@@ -80,7 +93,7 @@ def speeds(text):
     return values
 
 
-def _show_one(vehicle, model, speed, options):
+def _show_one(vehicle, model, speed, options, more):
     from railsym.modes import modes
 
     found = modes(model, float(speed[0]))
@@ -89,7 +102,7 @@ def _show_one(vehicle, model, speed, options):
         raise CommandError(f"no mode oscillates at up to {options.frequency:g} Hz; ask for a higher --frequency")
     drawn = _drawn_mode(found, listed, options.mode)
     if options.json:
-        write_json(_modes_data(vehicle, found, listed), options.json)
+        write_json(_modes_data(vehicle, found, listed) | more, options.json)
     if options.json != "-":
         print(_heading(vehicle, model) + f", {KMH * found.speed:.4g} km/h")
         rows = [[str(k), f"{m.frequency_hz:.3f}", f"{100 * m.damping_ratio:.2f}", m.label] for k, m in listed]
@@ -113,7 +126,7 @@ def _drawn_mode(found, listed, number):
 def _heading(vehicle, model):
     contact = model.contact
     configuration = f", {vehicle.configuration}" if vehicle.configuration else ""
-    return (f"{vehicle.name}{configuration}: conicity {contact.conicity:g}, friction {contact.friction:g}, "
+    return (f"{vehicle.name}{configuration}: conicity {contact.conicity:.4g}, friction {contact.friction:g}, "
             f"amplitude {1000 * contact.amplitude:g} mm")
 
 
@@ -124,7 +137,7 @@ def _modes_data(vehicle, found, listed):
                        "parity": m.parity, "eigenvalue": [m.eigenvalue.real, m.eigenvalue.imag]} for k, m in listed]}
 
 
-def _show_range(vehicle, model, speed, options):
+def _show_range(vehicle, model, speed, options, more):
     """Follow the modes: the least damped ones as a table, the root locus as a picture."""
     from railsym.plots.eigenvalues import shown_modes
     from railsym.tracking import track_modes
@@ -132,7 +145,7 @@ def _show_range(vehicle, model, speed, options):
     tracked = track_modes(model, speed)
     chosen = shown_modes(tracked.eigenvalue, (0.0, options.frequency), 0.5)
     if options.json:
-        write_json(_tracked_data(vehicle, tracked, chosen), options.json)
+        write_json(_tracked_data(vehicle, tracked, chosen) | more, options.json)
     if options.json != "-":
         print(_heading(vehicle, model) + "; least damped modes: damping ratio in % (frequency in Hz)")
         header = ["km/h", *(tracked.label[k] for k in chosen[:4])]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 from pathlib import Path
 
@@ -47,6 +48,15 @@ def write_json(content, target):
         Path(target).write_text(text, encoding="utf-8")
     except OSError as error:
         raise CommandError(f"--json {target}: {error.strerror}") from None
+
+
+def finite(value):
+    """JSON has no infinity: the text "inf" stands for it."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [finite(item) for item in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def check_plot_path(path):

@@ -29,7 +29,7 @@ def add_parser(commands, typed, add_output):
         command.add_argument(f"--{name}", type=typed(quantity, "m", name.replace("-", " ")), metavar="LENGTH", help=text)
     command.add_argument("--wheel-left", metavar="WHEEL", help="left wheel, where it differs")
     command.add_argument("--rail-left", metavar="RAIL", help="left rail, where it differs")
-    command.add_argument("--amplitude", type=typed(lengths), metavar="RANGE", help="amplitudes: 3mm, or first:last:count (default 1:7:13mm)")
+    command.add_argument("--amplitude", type=typed(lengths), metavar="RANGE", help="amplitudes: 3mm, or 2,3,4mm, or first:last:count (default 1:7:13mm)")
     add_output(command)
 
     def start(options):
@@ -57,13 +57,15 @@ def slope(text):
 
 
 def lengths(text):
-    """``3mm`` or ``1:7:13mm`` (13 values from 1 to 7 mm) as an array in m.
+    """``3mm``, ``2,3,4mm`` or ``1:7:13mm`` (13 values from 1 to 7 mm) as an array in m.
 
     Raises
     ------
     CommandError
-        If it is neither, or not ascending.
+        If it is none of these, or not ascending.
     """
+    if "," in text:
+        return _listed_lengths(text)
     parts = text.split(":")
     if len(parts) == 1:
         return np.array([quantity(text, "m", "amplitude")])
@@ -77,6 +79,15 @@ def lengths(text):
     return np.linspace(low, high, int(count))
 
 
+def _listed_lengths(text):
+    parts = text.split(",")
+    unit = parts[-1].lstrip(" +-.0123456789")
+    values = np.array([quantity(part if part.strip(" +-.0123456789") else part + unit, "m", "amplitude") for part in parts])
+    if (np.diff(values) <= 0.0).any():
+        raise CommandError(f"amplitude {text!r}: each must be larger than the one before")
+    return values
+
+
 def run(options):
     """Show the profiles that come along, or a pair."""
     if options.wheel is None:
@@ -87,7 +98,7 @@ def run(options):
     check_plot_path(options.plot)
     from railsym.conicity import harmonic_parameters
 
-    pair = _pair(options)
+    pair = pair_of(options, wheel_radius=options.wheel_radius, wheel_radius_left=options.wheel_radius_left)
     amplitude = np.linspace(1e-3, 7e-3, 13) if options.amplitude is None else options.amplitude
     found = [pair.equivalent_conicity(amplitude, with_roll=roll) for roll in (False, True)]
     parameters = [None if np.isnan(value) else harmonic_parameters(pair, a, value, centre)
@@ -100,7 +111,8 @@ def run(options):
         _draw(pair, found, options.plot)
 
 
-def _pair(options):
+def pair_of(options, **measures):
+    """The ContactPair of the options ``wheel``, ``rail``, ``gauge``, ... and of measures (m; None for the default)."""
     from railsym.contact_pair import ContactPair
     from railsym.profiles import load_profile, profiles
 
@@ -109,13 +121,13 @@ def _pair(options):
             return name if name is None else load_profile(name, kind)
         return load_profile(name, kind, smoothing=options.smoothing or 0.0)
 
-    given = {"gauge": options.gauge, "wheel_radius": options.wheel_radius, "wheel_radius_left": options.wheel_radius_left,
-             "flange_back_distance": options.flange_back_distance, "inclination": options.inclination}
+    given = {**measures, "gauge": options.gauge, "flange_back_distance": options.flange_back_distance, "inclination": options.inclination}
     given = {name: value for name, value in given.items() if value is not None}
     wheel, rail = loaded(options.wheel, "wheel"), loaded(options.rail, "rail")
     if rail.inclined:
         given.setdefault("gauge", None)
-    return ContactPair(wheel, rail, wheel_left=loaded(options.wheel_left, "wheel"), rail_left=loaded(options.rail_left, "rail"), **given)
+    left = (loaded(getattr(options, f"{kind}_left", None), kind) for kind in ("wheel", "rail"))
+    return ContactPair(wheel, rail, **dict(zip(("wheel_left", "rail_left"), left)), **given)
 
 
 def _list(options):
@@ -129,7 +141,7 @@ def _list(options):
 
 
 def _show(pair, found, parameters):
-    print(_title(pair))
+    print(title(pair))
     rows = []
     for k, (amplitude, without, rolling) in enumerate(zip(found[0].amplitude, found[0].conicity, found[1].conicity)):
         rest = ["--"] * 2 if parameters[k] is None else [f"{parameters[k].contact_angle_parameter:.3f}", f"{parameters[k].roll_parameter:.4f}"]
@@ -139,7 +151,8 @@ def _show(pair, found, parameters):
         print(found[0].message)
 
 
-def _title(pair):
+def title(pair):
+    """A pair and its measures in a line."""
     def sides(right, left):
         return right.name if right is left else f"{left.name} (left), {right.name} (right)"
 
@@ -181,6 +194,6 @@ def _draw(pair, found, path):
     def draw():
         from railsym.plots.profile_pair import plot_profile_pair
 
-        return plot_profile_pair(pair, contact, fine, title=_title(pair))
+        return plot_profile_pair(pair, contact, fine, title=title(pair))
 
     save_plot(draw, path)

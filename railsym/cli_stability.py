@@ -8,14 +8,14 @@ from dataclasses import asdict
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, save_plot, table, write_json
+from railsym.cli_output import check_plot_path, finite, save_plot, table, write_json
+from railsym.cli_pair import FROM_PAIR, pair_contacts, plain_contact
 from railsym.cli_values import CommandError, speed_range
-from railsym.contact import LinearContact
 from railsym.critical_speed import SPEED_RANGE, critical_speed
 from railsym.plots.stability_curves import always_stable
 from railsym.plots.style import KMH, criterion_text
 from railsym.sensitivity import sensitivity
-from railsym.stability_map import StabilityMap, stability_map
+from railsym.stability_map import StabilityMap, join_amplitudes, stability_map
 from railsym.vehicle import load_vehicle
 
 CONICITY = np.linspace(0.05, 0.4, 8)
@@ -28,14 +28,22 @@ def run(options):
     """Compute and show what the options of ``railsym stability`` ask for."""
     check_plot_path(options.plot)
     vehicle = load_vehicle(options.vehicle)
-    contact = LinearContact(friction=options.friction, amplitude=options.amplitude)
     speeds = SPEED_RANGE if options.speed_range is None else speed_range(" ".join(options.speed_range))
-    found = _solve(vehicle, options, contact, speeds)
-    influences = _sensitivities(found, options, contact, speeds) if options.sensitivity else {}
+    names = chosen_configurations(vehicle, options.configuration)
+    pair = pair_contacts(options, [vehicle.configured(name) for name in names] or [vehicle])
+    if pair:
+        contacts = pair.contacts
+        maps = [_solve(vehicle, names, options, c, [c.conicity], speeds) for c in contacts]
+        found = join_amplitudes(maps, pair.amplitude, pair.title)
+    else:
+        conicity = CONICITY if options.conicity is None else options.conicity
+        contacts = (plain_contact(options),) * len(conicity)
+        found = _solve(vehicle, names, options, contacts[0], conicity, speeds)
+    influences = _sensitivities(found, options, contacts, speeds) if options.sensitivity else {}
     if options.json != "-":
-        print(report(vehicle, found, influences))
+        print(report(vehicle, found, influences, pair))
     if options.json:
-        write_json(as_data(vehicle, found, contact, influences), options.json)
+        write_json(as_data(vehicle, found, contacts[0], influences, pair), options.json)
     if options.plot:
         from railsym.plots import plot_stability_report
 
@@ -59,10 +67,9 @@ def chosen_configurations(vehicle, wanted):
     return tuple(wanted)
 
 
-def _solve(vehicle, options, contact, speeds):
+def _solve(vehicle, names, options, contact, conicity, speeds):
     """A StabilityMap, of one unnamed configuration for a vehicle without any."""
-    names = chosen_configurations(vehicle, options.configuration)
-    conicity = CONICITY if options.conicity is None else options.conicity
+    conicity = np.asarray(conicity, dtype=float)
     criteria = tuple(dict.fromkeys(CRITERIA if options.criterion is None else options.criterion))
     watched = sys.stderr.isatty()
     if names:
@@ -72,7 +79,7 @@ def _solve(vehicle, options, contact, speeds):
     return StabilityMap((vehicle.name,), criteria, conicity, (tuple(found),), 0)
 
 
-def _sensitivities(found, options, contact, speeds):
+def _sensitivities(found, options, contacts, speeds):
     """Configuration -> Sensitivities at the middle conicity by the first criterion, or the reason why there are none."""
     middle = len(found.conicity) // 2
     result = {}
@@ -82,7 +89,7 @@ def _sensitivities(found, options, contact, speeds):
             continue
         vehicle = row[0].vehicle
         result[name] = sensitivity(vehicle, found.conicity[middle], damping_ratio=found.damping_ratios[0] or None, speed_range=speeds,
-                                   contact=contact, parameters=_parameters(vehicle, options.sensitivity), progress=sys.stderr.isatty())
+                                   contact=contacts[middle], parameters=_parameters(vehicle, options.sensitivity), progress=sys.stderr.isatty())
     return result
 
 
@@ -94,44 +101,47 @@ def _parameters(vehicle, kind):
                           if "position" not in name and np.isfinite(value) and value != 0.0)]
 
 
-def report(vehicle, found, influences=None):
-    """The tables as text."""
+def report(vehicle, found, influences=None, pair=None):
+    """The tables as text, headed by the `railsym.cli_pair.PairContacts` if there is one."""
     low, high = (KMH * speed for speed in found.results[0][0].speed_range)
     lines = [f"{vehicle.name}: {vehicle.description}",
              f"critical speed in km/h (frequency of the unstable mode in Hz) on straight track, searched from {low:.0f} to {high:.0f} km/h"]
+    header = cases = ["conicity", *(f"{c:.4g}" for c in found.conicity)]
+    if pair:
+        lines += ["", pair.title, pair.table()]
+        header, cases = ["amplitude: conicity", *pair.columns], ["amplitude", *(f"{1e3 * a:.4g} mm" for a in pair.amplitude)]
     notes = {}
     for column, criterion in enumerate(found.damping_ratios):
-        lines += ["", criterion_text(criterion), _speed_table(found, column, notes)]
+        lines += ["", criterion_text(criterion), _speed_table(found, column, header, cases, notes)]
     if notes:
-        lines += ["", *(f"{mark}, conicity {', '.join(values)}: {text}" for (mark, text), values in notes.items())]
+        lines += ["", *(f"{mark}, {cases[0]} {', '.join(values)}: {text}" for (mark, text), values in notes.items())]
     for name, result in (influences or {}).items():
-        lines += ["", f"{name}: what moves the critical speed, conicity {found.conicity[len(found.conicity) // 2]:.4g}",
+        lines += ["", f"{name}: what moves the critical speed, {cases[0]} {cases[1 + len(found.conicity) // 2]}",
                   result if isinstance(result, str) else _sensitivity_table(result)]
     return "\n".join(lines)
 
 
-def _speed_table(found, column, notes):
-    header = ["conicity", *(f"{c:.4g}" for c in found.conicity)]
+def _speed_table(found, column, header, cases, notes):
     rows = []
     for name, results in zip(found.configurations, found.results):
-        rows.append([name, *(_cell(name, results[column], k, notes) for k in range(len(found.conicity)))])
+        rows.append([name, *(_cell(name, results[column], k, cases[1 + k], notes) for k in range(len(found.conicity)))])
     return table(header, rows)
 
 
-def _cell(name, result, k, notes):
+def _cell(name, result, k, at, notes):
     """Speed and frequency; a mark and a note where there is none, or more than one."""
-    case, conicity = f"{name}, {criterion_text(result.damping_ratio)}", f"{result.conicity[k]:.4g}"
+    case = f"{name}, {criterion_text(result.damping_ratio)}"
     if np.ma.getmaskarray(result.speed)[k]:
         low, high = (KMH * speed for speed in result.speed_range)
         why = f"none from {low:.0f} to {high:.0f} km/h" if always_stable(result.message[k]) else result.message[k]
-        notes.setdefault((f"{_NONE} {case}", why), []).append(conicity)
+        notes.setdefault((f"{_NONE} {case}", why), []).append(at)
         return _NONE
     text = f"{KMH * result.speed[k]:.0f} ({result.frequency_hz[k]:.1f})"
     if len(result.crossings[k]) == 1:
         return text
     worse, better = ("below", "above") if result.damping_ratio else ("unstable", "stable")
     steps = ", ".join(f"{worse if c.direction > 0 else better} from {KMH * c.speed:.0f}" for c in result.crossings[k])
-    notes.setdefault((f" * {case}", f"{steps} km/h"), []).append(conicity)
+    notes.setdefault((f" * {case}", f"{steps} km/h"), []).append(at)
     return text + "*"
 
 
@@ -141,17 +151,18 @@ def _sensitivity_table(result):
     return table(["parameter", "value", "% of speed for 1 % (places: 1 cm)", "% of frequency"], rows)
 
 
-def as_data(vehicle, found, contact, influences):
+def as_data(vehicle, found, contact, influences, pair=None):
     """Everything as plain data for JSON, SI units; null where there is no critical speed."""
     contacts = {name: asdict(contact.resolved(row[0].vehicle.contact)) for name, row in zip(found.configurations, found.results)}
     for values in contacts.values():
-        values.pop("conicity")
+        for key in FROM_PAIR if pair else ("conicity",):
+            values.pop(key)
     cases = []
     for name, row in zip(found.configurations, found.results):
         for result in row:
             cases += [_case(name, result, k) for k in range(len(found.conicity))]
     return {"vehicle": vehicle.name, "units": {"speed": "m/s", "frequency_hz": "Hz", "conicity": "-", "damping_ratio": "-"},
-            "speed_range": list(found.results[0][0].speed_range), "contact": _finite(contacts), "cases": cases,
+            "speed_range": list(found.results[0][0].speed_range), **({"pair": finite(pair.as_data())} if pair else {}), "contact": finite(contacts), "cases": cases,
             "sensitivity": {name: _influence_data(result) for name, result in influences.items()}}
 
 
@@ -159,7 +170,8 @@ def _case(name, result, k):
     missing = bool(np.ma.getmaskarray(result.speed)[k])
     crossings = [{"speed": c.speed, "frequency_hz": c.frequency_hz, "becomes": "unstable" if c.direction > 0 else "stable",
                   "label": c.label} for c in result.crossings[k]]
-    return {"configuration": name, "criterion": result.criterion, "damping_ratio": result.damping_ratio,
+    amplitude = {} if result.amplitude is None else {"amplitude": float(result.amplitude[k])}
+    return {"configuration": name, **amplitude, "criterion": result.criterion, "damping_ratio": result.damping_ratio,
             "conicity": float(result.conicity[k]), "speed": None if missing else float(result.speed[k]),
             "frequency_hz": None if missing else float(result.frequency_hz[k]), "label": result.label[k],
             "message": result.message[k], "crossings": crossings}
@@ -172,10 +184,3 @@ def _influence_data(result):
     return {"message": result.message, "parameters": [
         {"name": name, "unit": unit, "value": float(value), "speed_derivative": float(speed), "frequency_derivative": float(frequency)}
         for name, unit, value, speed, frequency in columns]}
-
-
-def _finite(value):
-    """JSON has no infinity: the text "inf" stands for it."""
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    return str(value) if isinstance(value, float) and not np.isfinite(value) else value

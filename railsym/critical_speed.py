@@ -14,7 +14,7 @@ from railsym.stability import FREQUENCY_BAND, CriticalCrossing, Stability, stabi
 from railsym.verification import verify_stability
 
 CRITERIA = ("real_part", "damping_ratio")
-UNITS = {"conicity": "-", "speed": "m/s", "frequency_hz": "Hz", "damping_ratio": "-"}
+UNITS = {"conicity": "-", "amplitude": "m", "speed": "m/s", "frequency_hz": "Hz", "damping_ratio": "-"}
 SPEED_RANGE = (5.0, 250.0)
 
 
@@ -40,6 +40,10 @@ class CriticalSpeeds:
     speed_range : (float, float)
         m/s.
     vehicle : Vehicle
+    amplitude : ndarray, optional
+        m, where each conicity is that of a pair of profiles at an amplitude; its shape is that of `conicity`.
+    pair : str
+        The pair, for headings.
     """
 
     conicity: np.ndarray
@@ -51,6 +55,8 @@ class CriticalSpeeds:
     damping_ratio: float
     speed_range: tuple[float, float]
     vehicle: Any = field(repr=False)
+    amplitude: np.ndarray | None = None
+    pair: str = ""
     units = UNITS
 
     @property

@@ -126,6 +126,32 @@ def stability_map(vehicle, configurations=None, conicity=(0.05, 0.1, 0.15, 0.2, 
     return StabilityMap(names, ratios, wanted, tuple(row for row, _ in rows), sum(count for _, count in rows))
 
 
+def join_amplitudes(maps, amplitude, pair):
+    """Maps of one conicity each, of a pair of profiles at several amplitudes, as one map.
+
+    Parameters
+    ----------
+    maps : sequence of StabilityMap
+        Of the same configurations, criteria and speeds.
+    amplitude : array_like, shape (k,)
+        m, in the order of the maps.
+    pair : str
+        The pair, for headings.
+
+    Returns
+    -------
+    StabilityMap
+    """
+    def joined(results):
+        parts = {name: np.ma.concatenate([getattr(r, name) for r in results]) for name in ("speed", "frequency_hz")}
+        chained = {name: tuple(item for r in results for item in getattr(r, name)) for name in ("crossings", "message")}
+        return replace(results[0], conicity=np.concatenate([r.conicity for r in results]), label=np.concatenate([r.label for r in results]),
+                       amplitude=np.array(amplitude, dtype=float), pair=pair, **parts, **chained)
+
+    rows = tuple(tuple(map(joined, zip(*same))) for same in zip(*(m.results for m in maps)))
+    return replace(maps[0], conicity=np.concatenate([m.conicity for m in maps]), results=rows, speeds_solved=sum(m.speeds_solved for m in maps))
+
+
 @dataclass(frozen=True)
 class _Row:
     """Critical speeds of one configured vehicle; a class, so that process pools can carry it."""

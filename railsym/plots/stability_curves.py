@@ -10,6 +10,7 @@ from railsym.plots.style import KMH, criterion_text, line_styles, new_axes, tidy
 _WIDTH = 3.5                      # inches, of a panel
 _OTHER_MODE = 1.42                # ratio of neighbouring frequencies, just above the root of 2
 _CONICITY, _FREQUENCY = "equivalent conicity", "frequency of unstable mode, Hz"
+_MOST_NAMED = 7                   # amplitudes with their conicity at the ticks: more would overlap
 
 
 def plot_critical_speed(result, *, label=None, axes=None):
@@ -110,7 +111,8 @@ def plot_stability_report(result):
         Four rows, three without the change where there is one configuration only.
     """
     rows = 4 if len(result.configurations) > 1 else 3
-    panels = _row(None, rows, result, sharey="row", height=2.7)
+    panels = _row(None, rows, result, sharey="row", height=3.0 if result.results[0][0].pair else 2.7)
+    panels[0, 0].figure.suptitle(result.results[0][0].pair, fontsize=10)
     for column in range(panels.shape[1]):
         cases = by_configuration(result, column)
         _draw_speeds(panels[0, column], cases)
@@ -139,18 +141,36 @@ def _row(axes, rows, result, height=3.3, **options):
 def _draw_speeds(axes, cases):
     styles = line_styles(tuple(cases))
     for name, result in cases.items():
-        conicity = np.atleast_1d(result.conicity)
-        axes.plot(*_one_mode(conicity, KMH * result.speed, result), label=name, **styles[name])
-        _mark_missing(axes, conicity, result, styles[name])
-        _mark_ranges(axes, conicity, result, styles[name])
-    tidy(axes, _CONICITY, "critical speed, km/h", criterion_text(_ratio(cases)))
+        at = _across(result)
+        axes.plot(*_one_mode(at, KMH * result.speed, result), label=name, **styles[name])
+        _mark_missing(axes, at, result, styles[name])
+        _mark_ranges(axes, at, result, styles[name])
+    tidy(axes, "", "critical speed, km/h", criterion_text(_ratio(cases)))
+    _name_across(axes, result)
+
+
+def _across(result):
+    """What the horizontal axis shows: conicities, or amplitudes (mm) of a pair of profiles."""
+    return np.atleast_1d(result.conicity) if result.amplitude is None else 1e3 * np.atleast_1d(result.amplitude)
+
+
+def _name_across(axes, result):
+    """Name of the horizontal axis; each amplitude of a pair with its conicity where there is room."""
+    if result.amplitude is None:
+        axes.set_xlabel(_CONICITY)
+        return
+    amplitude, named = _across(result), len(result.amplitude) <= _MOST_NAMED
+    axes.set_xlabel("amplitude, mm; below: conicity" if named else "lateral amplitude, mm")
+    if named:
+        axes.set_xticks(amplitude, [f"{a:.3g}\n{c:#.3g}" for a, c in zip(amplitude, result.conicity)])
 
 
 def _draw_frequency(axes, cases):
     styles = line_styles(tuple(cases))
     for name, result in cases.items():
-        axes.plot(*_one_mode(result.conicity, result.frequency_hz, result), label=name, **styles[name])
-    tidy(axes, _CONICITY, _FREQUENCY, criterion_text(_ratio(cases)))
+        axes.plot(*_one_mode(_across(result), result.frequency_hz, result), label=name, **styles[name])
+    tidy(axes, "", _FREQUENCY, criterion_text(_ratio(cases)))
+    _name_across(axes, result)
 
 
 def _draw_frequency_over_speed(axes, cases):
@@ -174,9 +194,10 @@ def _one_mode(x, y, result):
 def _draw_change(axes, result, column):
     styles = line_styles(result.configurations)
     for (name, case), change in zip(by_configuration(result, column).items(), result.change[:, column]):
-        axes.plot(*_one_mode(result.conicity, change, case), label=name, **styles[name])
+        axes.plot(*_one_mode(_across(case), change, case), label=name, **styles[name])
     axes.axhline(0.0, color="black", linewidth=0.8, zorder=1)
-    tidy(axes, _CONICITY, f"change against {result.configurations[0]}, %", criterion_text(result.damping_ratios[column]))
+    tidy(axes, "", f"change against {result.configurations[0]}, %", criterion_text(result.damping_ratios[column]))
+    _name_across(axes, case)
 
 
 def _from_zero(panels):
