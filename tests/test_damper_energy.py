@@ -44,6 +44,13 @@ def test_a_lag_that_is_given_is_kept(lag):
     assert (stiffness == pytest.approx(5e6, rel=1e-6)) == (lag == 2e-3)
 
 
+def test_shifted_loops_are_those_without_the_lag():
+    late, prompt = (energy.loops_of(linear_records(3e5, 5e6, lag=lag)) for lag in (2e-3, 0.0))
+    scale = prompt.scale[:, None]
+    np.testing.assert_allclose(late.shifted(2e-3).force / scale, prompt.force / scale, atol=1e-9)
+    assert np.abs((late.force - prompt.force) / scale).max() > 1e-3
+
+
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize(("c", "k"), [(1e6, 2e6), (1e5, 2e6), (1e5, 1e7), (1e6, 1e7)])
 def test_noise_and_lag(c, k, seed):
