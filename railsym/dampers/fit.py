@@ -189,8 +189,10 @@ def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, qui
         if method == "least_squares":
             made, x = solve.refine(loops, made, x, fixed, bounds, progress, 12 if curve else 40, curve)
             if curve and not quick:
+                # What a wrong model leaves is no reason for a curve with steps.
+                left = _norm(solve.misfit(loops, made, x, fixed))
                 made, x = solve.with_better_nodes(loops, made, x)
-                made, x = solve.refine(loops, made, x, fixed, bounds, progress)
+                made, x = solve.refine(loops, made, x, fixed, bounds, progress, left=min(left, 0.2))
         found = made, x, solve.misfit(loops.coarse(2) if method == "energy" else loops, made, x, fixed)
         if best is None or _norm(found[2]) < _norm(best[2]):
             best = found

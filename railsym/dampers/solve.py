@@ -147,9 +147,9 @@ def _roughness(made, x, weight):
     return weight / _SOFT * np.concatenate(rows) if rows else np.zeros(0)
 
 
-def _weight(loops):
-    """Size of the error of one entry of the misfit."""
-    return max(noise_floor(loops), _LEAST_NOISE) / np.sqrt(2.0 * loops.kept.sum())
+def _weight(loops, left=0.0):
+    """Size of the error of one entry of the misfit; ``left`` is what a first fit left."""
+    return max(noise_floor(loops), _LEAST_NOISE, left) / np.sqrt(2.0 * loops.kept.sum())
 
 
 def evidence(loops, made, x, fixed, weight=None):
@@ -160,13 +160,13 @@ def evidence(loops, made, x, fixed, weight=None):
     return np.concatenate([jacobian(loops, made, x, fixed), rows])
 
 
-def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False):
+def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False, left=0.0):
     """Least squares from ``x``; its parametrisation and vector."""
     from scipy.optimize import least_squares
 
     low, high = made.bounds(bounds)
     state = np.zeros_like(loops.force)
-    weight = _weight(loops) * (_STIFFER if quick else 1.0)
+    weight = _weight(loops, left) * (_STIFFER if quick else 1.0)
 
     def function(p):
         return np.concatenate([misfit(loops, made, p, fixed, state), _roughness(made, p, weight)])
