@@ -23,9 +23,10 @@ def creep_figures():
         return 1e6 * median_time(lambda: _core.creep_forces(law, rows, _GRID, slopes), 41) / _CONTACTS
 
     figures = [Figure(f"creep forces: {law}{', with derivatives' if slopes else ''}", cost(law, slopes), "us", limit,
-                      "a contact" + (", 20 x 20" if law == "fastsim" else ""))
+                      "a contact" + (", 20 x 20" if law in ("fastsim", "fastrip") else ""))
                for law, slopes, limit in (("kalker_linear", True, None), ("shen_hedrick_elkins", True, None),
-                                          ("polach", True, 0.05), ("fastsim", False, 0.5), ("fastsim", True, None))]
+                                          ("polach", True, 0.05), ("fastsim", False, 0.5), ("fastsim", True, None),
+                                          ("fastrip", False, None), ("fastrip", True, None))]
     return figures + _against_numba(rows, figures[3].value)
 
 

@@ -41,6 +41,7 @@ rs_creep_law rs_creep_kalker_linear;
 rs_creep_law rs_creep_shen_hedrick_elkins;
 rs_creep_law rs_creep_polach;
 rs_creep_law rs_creep_fastsim;
+rs_creep_law rs_creep_fastrip;
 
 /* For each of the eight contacts; l is its number. */
 #define RS_EACH(l) for (int l = 0; l < RS_LANES; l++)

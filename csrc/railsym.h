@@ -67,7 +67,7 @@
  *
  * rs_creep_forces      tangential forces of rolling contacts
  *   Given     law       RS_CREEP_...
- *             strips, cells   grid of FASTSIM: strips across, cells along each; >= 1
+ *             strips, cells   grid of FASTSIM, FaStrip: strips across, cells along each; >= 1
  *             contacts  n >= 0
  *             in        15 x n: xi -, eta -, phi 1/m, a m (along x), b m, load N, friction -, shear modulus N/m^2,
  *                       Kalker weight -, C11, C22, C23, C33 -, Polach's kA, kS -

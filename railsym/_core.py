@@ -310,10 +310,11 @@ def bench_cycles(law, period, elongation, rate, substeps=1, state=None):
 
 
 CREEP_LAWS = {
-    "kalker_linear": lib.RS_CREEP_KALKER_LINEAR,
-    "shen_hedrick_elkins": lib.RS_CREEP_SHEN_HEDRICK_ELKINS,
-    "polach": lib.RS_CREEP_POLACH,
-    "fastsim": lib.RS_CREEP_FASTSIM,
+    "kalker_linear": "RS_CREEP_KALKER_LINEAR",
+    "shen_hedrick_elkins": "RS_CREEP_SHEN_HEDRICK_ELKINS",
+    "polach": "RS_CREEP_POLACH",
+    "fastsim": "RS_CREEP_FASTSIM",
+    "fastrip": "RS_CREEP_FASTRIP",
 }
 
 
@@ -327,7 +328,7 @@ def creep_forces(law, rows, grid, slopes):
     rows : array_like, shape (15, n)
         Inputs as listed at rs_creep_forces in railsym.h.
     grid : pair of int
-        Strips and cells of FASTSIM.
+        Strips and cells of FASTSIM and FaStrip.
     slopes : bool
 
     Returns
@@ -340,6 +341,6 @@ def creep_forces(law, rows, grid, slopes):
         raise ContactError(f"creep forces take {lib.RS_CREEP_INPUTS} rows, got shape {rows.shape}")
     contacts = rows.shape[1]
     forces, found = np.empty((3, contacts)), np.empty((3, 6, contacts)) if slopes else None
-    _check(lib.rs_creep_forces(CREEP_LAWS[law], *grid, contacts, _doubles(rows), _doubles(forces),
+    _check(lib.rs_creep_forces(getattr(lib, CREEP_LAWS[law]), *grid, contacts, _doubles(rows), _doubles(forces),
                                _doubles(found) if slopes else ffi.NULL), f"creep law {law}")
     return forces, found

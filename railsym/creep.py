@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Creep forces of rolling contacts: Kalker linear, Shen-Hedrick-Elkins, Polach, FASTSIM.
+"""Creep forces of rolling contacts: Kalker linear, Shen-Hedrick-Elkins, Polach, FASTSIM, FaStrip.
 
     forces = creep_forces("fastsim", a, b, creepages, load, friction, Material())
 
@@ -74,7 +74,7 @@ def creep_forces(law, a, b, creepages, load, friction, material=None, *, kalker_
     Parameters
     ----------
     law : str
-        "kalker_linear" (or "kalker"), "shen_hedrick_elkins", "polach" or "fastsim"; see `creep_laws`.
+        "kalker_linear" (or "kalker"), "shen_hedrick_elkins", "polach", "fastsim" or "fastrip"; see `creep_laws`.
     a, b : float or ndarray, shape (...)
         Semi-axes along x (rolling direction) and y (lateral), m.
     creepages : array_like, shape (..., 3)
@@ -90,7 +90,7 @@ def creep_forces(law, a, b, creepages, load, friction, material=None, *, kalker_
     reduction : pair of float or ndarray
         Polach's reduction factors kA (adhesion) and kS (slip), 0 < kS <= kA <= 1; other laws ignore them.
     grid : pair of int
-        FASTSIM: number of strips across, and of cells along each strip.
+        FASTSIM, FaStrip: number of strips across, and of cells along each strip.
     derivatives : bool
         Return `CreepForces` with derivatives too.
 

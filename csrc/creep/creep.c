@@ -16,7 +16,7 @@ _Static_assert(SLIP + 1 == RS_CREEP_INPUTS, "rows of rs_creep_forces");
 #define LARGEST_U 1e9               /* beyond it contacts slip fully to 1 in 1e9: u is scaled back to it */
 
 static rs_creep_law *const LAWS[] = {rs_creep_kalker_linear, rs_creep_shen_hedrick_elkins, rs_creep_polach,
-                                     rs_creep_fastsim};
+                                     rs_creep_fastsim, rs_creep_fastrip};
 
 typedef struct {
 	rs_lane in[RS_CREEP_INPUTS];

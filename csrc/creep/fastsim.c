@@ -21,14 +21,11 @@
 #include <string.h>
 
 #include "../creep.h"
+#include "masks.h"
 
 #if defined(__GNUC__)
 #define BLOCK 5 /* strips side by side: the square root of one hides behind the others */
 typedef float single_lane __attribute__((vector_size(4 * RS_LANES), may_alias));
-typedef long long mask_lane __attribute__((vector_size(8 * RS_LANES), may_alias));
-/* All bits of a lane where it is not below zero, none where it is. */
-#define NOT_NEGATIVE(d) (~((mask_lane)(d) >> 63))
-#define KEEP(x, mask) ((rs_lane)((mask_lane)(x) & (mask)))
 /* 1/sqrt(m) in single precision and one Newton step: 1e-14, exactly 1 for 1. For 1 <= m < 1e36. */
 #define INVERSE_ROOT(to, m) \
 	do { \
@@ -40,9 +37,6 @@ typedef long long mask_lane __attribute__((vector_size(8 * RS_LANES), may_alias)
 	} while (0)
 #else
 #define BLOCK 1
-typedef int mask_lane;
-#define NOT_NEGATIVE(d) ((d) >= 0.0)
-#define KEEP(x, mask) ((mask) ? (x) : 0.0)
 #define INVERSE_ROOT(to, m) ((to) = 1.0 / sqrt(m))
 #endif
 
