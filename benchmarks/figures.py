@@ -15,6 +15,7 @@ from benchmarks.measure import Figure, cost_of_code, median_time, printed_by
 _DERIVE = "from derive.__main__ import generated_files; generated_files()"
 _IMPORT = "import time; start = time.perf_counter(); import railsym; print(time.perf_counter() - start)"
 _USE = "import time; start = time.perf_counter(); import railsym as rs; rs.linearise; rs.critical_speed; print(time.perf_counter() - start)"
+_GRID = 25            # speeds of the dense scan, 10 m/s apart: coarse, so to its favour
 _SAMPLE = 24          # dense eigenproblems that the extrapolation rests on
 
 
@@ -71,7 +72,39 @@ def stability_figures():
             Figure("speeds solved", found.speeds_solved, "-", None, "eigenproblems in the scans and Newton steps"),
             Figure("dense eigvals over the same speeds", dense * found.speeds_solved, "s", None,
                    f"extrapolated from {_SAMPLE} measured matrices over configurations, conicities and speeds"),
-            Figure("ratio", dense * found.speeds_solved / seconds, "-", 20.0, "dense over railsym", at_least=True)]
+            Figure("ratio, solve for solve", dense * found.speeds_solved / seconds, "-", 20.0, "dense over railsym", at_least=True),
+            *_same_answer(vehicle, found, dense, seconds)]
+
+
+def _same_answer(vehicle, found, dense, seconds):
+    """Dense eigenvalues until they give the same critical speeds: a grid of speeds, then Brent's method to 1e-6."""
+    refined = np.mean([_dense_refinement(vehicle, found, name) for name in ("AS_K", "AS_Mal_K")])
+    crossings = sum(len(c) for row in found.results for result in row for c in result.crossings)
+    solves = len(found.configurations) * len(found.conicity) * _GRID + crossings * refined
+    note = f"{_GRID} speeds a case and {refined:.1f} more for each of {crossings} crossings; measured on two cases"
+    return [Figure("dense eigvals to the same answer", dense * solves, "s", None, note),
+            Figure("ratio, same answer", dense * solves / seconds, "-")]
+
+
+def _dense_refinement(vehicle, found, name):
+    """Dense eigenproblems that Brent's method takes from an interval of the grid to the critical speed."""
+    from scipy.optimize import brentq
+
+    import railsym as rs
+
+    model = rs.linear_model(vehicle.configured(name), rs.LinearContact(conicity=float(found.conicity[3])))
+    wanted = float(found.of(name).speed[3])
+
+    def growth(speed):
+        values = np.linalg.eigvals(model.state_matrix(speed))
+        return values.real[np.abs(values.imag) > 1.0].max()  # without the constant-speed pair
+
+    grid = np.linspace(*found.of(name).speed_range, _GRID)
+    after = np.searchsorted(grid, wanted)
+    speed, result = brentq(growth, grid[after - 1], grid[after], xtol=1e-6 * wanted, full_output=True)
+    if abs(speed / wanted - 1.0) > 2e-6:
+        raise RuntimeError(f"{name}: dense critical speed {speed} m/s against {wanted} m/s")
+    return result.function_calls - 2
 
 
 def _dense_time(vehicle, found):

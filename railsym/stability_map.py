@@ -65,7 +65,7 @@ class StabilityMap:
                      for name, row in zip(self.configurations, self.results) for z, r in zip(self.damping_ratios, row)
                      for c, text in zip(r.conicity, r.message))
 
-    def of(self, configuration: str, criterion="real_part", damping_ratio=None) -> CriticalSpeeds:
+    def of(self, configuration: str, criterion=None, damping_ratio=None) -> CriticalSpeeds:
         """The critical speeds of one configuration by one criterion.
 
         Raises

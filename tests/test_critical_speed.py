@@ -375,3 +375,9 @@ def test_parameter_map_over_two_parameters(bogie):
     assert float(found.speed[1, 2]) == pytest.approx(float(critical_speed(bogie.replace({name: 1.2 * mass}), 0.3).speed), rel=1e-9)
     with pytest.raises(ModelError, match="one or two"):
         parameter_map(bogie, {})
+
+
+def test_a_map_takes_a_damping_ratio_alone():
+    found = stability_map(load_vehicle("bogie"), conicity=[0.3], criteria=("real_part", 0.05))
+    assert found.of(found.configurations[0], damping_ratio=0.05).criterion == found.of(found.configurations[0], 0.05).criterion
+    assert found.of(found.configurations[0]).criterion != found.of(found.configurations[0], 0.05).criterion
