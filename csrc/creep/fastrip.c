@@ -14,16 +14,15 @@
  * D is the difference of the two semi-ellipses of Carter's solution over tau, free of cancellation; adhesion and the
  * weights of the cells in slip are integrated exactly, so h is continuous in u. Strips at Y = cos((j + 1/2) pi/n).
  *
- * Ours, where the paper's law jumps:
+ * Ours, where the law as implemented in CONTACT (E. Vollebregt) jumps:
  * - With |psi| > 1 strip theory may pass the bound at the leading edge, the more the larger R = (psi^2 - 1) L (1 + |1 - e/L|)/
  *   (the denominator of e): it has the weight w = z^2 (3 - 2 z), z = 2 (1 - R) within 0..1, and FASTSIM's tractions 1 - w.
  * - Where a strip slips fully, slip is against the creepage (one flexibility), where it sticks against linear theory (three):
  *   C11, C22 and 32 C23/(3 pi sqrt(a/b)) count with w (1 - tau^4), their mean with the rest. tau is 1 from e = L on. The
  *   power was chosen on the exact solutions of docs/creep_forces.md.
  *
- * M.Sh. Sichani, R. Enblom, M. Berg, An alternative to FASTSIM for tangential solution of the wheel-rail contact,
- * Veh. Syst. Dyn. 54 (2016) 748-764; J.J. Kalker, A strip theory for rolling with slip and spin, Proc. Kon. Ned. Akad.
- * Wet. B 70 (1967) 10-62.
+ * After M.Sh. Sichani, R. Enblom, M. Berg, An alternative to FASTSIM for tangential solution of the wheel-rail contact,
+ * Veh. Syst. Dyn. 54(6) (2016), and J.J. Kalker's strip theory with slip and spin (1967).
  */
 #include <string.h>
 
