@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, save_plot, table, write_json
+from railsym.cli_output import check_plot_path, save_plot, say, table, write_json
 from railsym.cli_values import CommandError
 
 MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
@@ -59,7 +59,7 @@ def run(options):
     found = verdict(fits, records)
     speeds = _critical_speeds(options, fits, found) if options.vehicle else None
     if options.json != "-":
-        print(report(records, fits, found, options.model, speeds))
+        say(report(records, fits, found, options.model, speeds))
     if options.json:
         write_json(as_data(records, fits, found, options.model, speeds), options.json)
     if options.plot:

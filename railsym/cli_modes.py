@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, finite, save_plot, table, write_json
+from railsym.cli_output import check_plot_path, finite, save_plot, say, table, write_json
 from railsym.cli_pair import pair_contacts, plain_contact
 from railsym.cli_values import CommandError, numbers, quantity
 from railsym.plots.style import KMH
@@ -26,10 +26,10 @@ def list_vehicles(options):
         return
     for vehicle in loaded:
         data = _vehicle_data(vehicle)
-        print(f"{vehicle.name}: {vehicle.description}")
-        print(f"    {data['bodies']} {'body' if data['bodies'] == 1 else 'bodies'}, {data['elements']} elements, {data['mass'] / 1000:.2f} t")
+        say(f"{vehicle.name}: {vehicle.description}")
+        say(f"    {data['bodies']} {'body' if data['bodies'] == 1 else 'bodies'}, {data['elements']} elements, {data['mass'] / 1000:.2f} t")
         for name, text in data["configurations"].items():
-            print(f"    {name:<24} {text}".rstrip())
+            say(f"    {name:<24} {text}".rstrip())
 
 
 def _vehicle_data(vehicle):
@@ -50,8 +50,8 @@ def run(options):
     model = linear_model(vehicle, _contact(options, pair))
     text = " ".join(options.speed)
     if pair and options.json != "-":
-        print(pair.title)
-        print(pair.table() + "\n")
+        say(pair.title)
+        say(pair.table() + "\n")
     show = _show_range if ":" in text else _show_one
     show(vehicle, model, speeds(text), options, {"pair": finite(pair.as_data())} if pair else {})
 
@@ -104,11 +104,11 @@ def _show_one(vehicle, model, speed, options, more):
     if options.json:
         write_json(_modes_data(vehicle, found, listed) | more, options.json)
     if options.json != "-":
-        print(_heading(vehicle, model) + f", {KMH * found.speed:.4g} km/h")
+        say(_heading(vehicle, model) + f", {KMH * found.speed:.4g} km/h")
         rows = [[str(k), f"{m.frequency_hz:.3f}", f"{100 * m.damping_ratio:.2f}", m.label] for k, m in listed]
-        print(table(["mode", "frequency, Hz", "damping ratio, %", "motion"], rows, left=(3,)))
+        say(table(["mode", "frequency, Hz", "damping ratio, %", "motion"], rows, left=(3,)))
         growing = ", ".join(f"{m.label} ({m.frequency_hz:.2f} Hz)" for m in found.unstable)
-        print(f"unstable: {growing}" if growing else "stable")
+        say(f"unstable: {growing}" if growing else "stable")
     if options.plot:
         from railsym.plots import plot_mode_shape
 
@@ -147,12 +147,12 @@ def _show_range(vehicle, model, speed, options, more):
     if options.json:
         write_json(_tracked_data(vehicle, tracked, chosen) | more, options.json)
     if options.json != "-":
-        print(_heading(vehicle, model) + "; least damped modes: damping ratio in % (frequency in Hz)")
+        say(_heading(vehicle, model) + "; least damped modes: damping ratio in % (frequency in Hz)")
         header = ["km/h", *(tracked.label[k] for k in chosen[:4])]
         rows = [[f"{KMH * v:.0f}", *(f"{100 * tracked.damping_ratio[i, k]:.1f} ({tracked.frequency_hz[i, k]:.2f})" for k in chosen[:4])]
                 for i, v in enumerate(speed)]
-        print(table(header, rows, left=()))
-        print(tracked.message)
+        say(table(header, rows, left=()))
+        say(tracked.message)
     if options.plot:
         from railsym.plots import plot_root_locus
 

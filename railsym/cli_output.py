@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 from pathlib import Path
 
@@ -30,6 +31,16 @@ def table(header, rows, left=(0,)):
         return "  ".join(padded).rstrip()
 
     return "\n".join([line(header), "-" * len(line(["-" * w for w in widths])), *map(line, rows)])
+
+
+def say(text=""):
+    """Print a text; a reader that has left, as ``| head`` does, does not stop the run: its files are still written."""
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())  # what is still buffered goes there as well
+        os.close(nowhere)
 
 
 def write_json(content, target):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, save_plot, table, write_json
+from railsym.cli_output import check_plot_path, save_plot, say, table, write_json
 from railsym.cli_values import CommandError, number, quantity
 
 _STEP = 5e-5          # m between shifts drawn: every fifth has a contact line
@@ -137,18 +137,18 @@ def _list(options):
     if options.json:
         write_json([{"name": p.name, "kind": p.kind, "description": p.description, "origin": p.origin} for p in loaded], options.json)
     if options.json != "-":
-        print(table(["profile", "kind", "what it is"], [[p.name, p.kind, p.description] for p in loaded], left=(0, 1, 2)))
+        say(table(["profile", "kind", "what it is"], [[p.name, p.kind, p.description] for p in loaded], left=(0, 1, 2)))
 
 
 def _show(pair, found, parameters):
-    print(title(pair))
+    say(title(pair))
     rows = []
     for k, (amplitude, without, rolling) in enumerate(zip(found[0].amplitude, found[0].conicity, found[1].conicity)):
         rest = ["--"] * 2 if parameters[k] is None else [f"{parameters[k].contact_angle_parameter:.3f}", f"{parameters[k].roll_parameter:.4f}"]
         rows.append([f"{1e3 * amplitude:g} mm", *("--" if np.isnan(v) else f"{v:.3f}" for v in (without, rolling)), *rest])
-    print(table(["amplitude", "conicity", "with roll", "contact-angle parameter", "roll parameter"], rows))
+    say(table(["amplitude", "conicity", "with roll", "contact-angle parameter", "roll parameter"], rows))
     if found[0].message:
-        print(found[0].message)
+        say(found[0].message)
 
 
 def title(pair):

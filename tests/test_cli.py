@@ -188,3 +188,15 @@ def test_runs_as_a_module(tmp_path):
     """From another directory: in the checkout ``python -m`` would find the source without its compiled library."""
     done = subprocess.run([sys.executable, "-m", "railsym", "modes", "bogie"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2 and done.stdout == "" and done.stderr.startswith("railsym: ")
+
+
+def test_a_reader_that_leaves_does_not_cost_the_picture(tmp_path):
+    """As ``railsym ... | head -1`` does: the pipe is closed before anything is printed."""
+    picture = tmp_path / "bogie.png"
+    code = f"import sys; from railsym.cli import main; sys.exit(main({[*BOGIE, '--plot', str(picture)]!r}))"
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
+    process.stdout.close()
+    errors = process.stderr.read().decode()
+    process.stderr.close()
+    assert (process.wait(), errors) == (0, "")
+    assert picture.stat().st_size > 1000
