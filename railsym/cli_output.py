@@ -51,12 +51,12 @@ def write_json(content, target):
     CommandError
         If the file cannot be written.
     """
-    text = json.dumps(content, indent=2, allow_nan=False) + "\n"
+    text = json.dumps(content, indent=2, allow_nan=False)
     if target == "-":
-        sys.stdout.write(text)
+        say(text)
         return
     try:
-        Path(target).write_text(text, encoding="utf-8")
+        Path(target).write_text(text + "\n", encoding="utf-8")
     except OSError as error:
         raise CommandError(f"--json {target}: {error.strerror}") from None
 
