@@ -85,3 +85,8 @@ enum { RS_CREEP_INPUTS = 15 };
 
 int rs_creep_forces(int law, int strips, int cells, int contacts, const double *in, double *force,
                     double *slopes);
+
+enum { RS_OUT_OF_TABLE = 6 };
+enum { RS_ZONES = 3, RS_PLACE_SIZE = 4 };
+
+typedef struct rs_contact_table rs_contact_table;
