@@ -6,30 +6,16 @@
 
 #include "model.h"
 
-static void trigonometry(rs_model *model, const double *q)
+void rs_group_gather(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
 {
-	for (int k = 0; k < model->coordinates; k++)
-		if (model->is_angle[k]) {
-			model->sine[k] = sin(q[k]);
-			model->cosine[k] = cos(q[k]);
-		}
-}
-
-/* Coordinates that do not exist keep the zeros (cosines: ones) of fill_group. */
-static void gather(const rs_model *model, const rs_kernel_info *info, const int *index, double *in,
-                   const double *q, const double *u, const double *a)
-{
-	const double *from[5] = {q, u, a, model->sine, model->cosine};
 	int lanes = rs_kernel_lanes();
-	for (int lane = 0; lane < lanes; lane++)
-		for (int c = 0; c < info->coordinates; c++) {
-			int k = index[lane * info->coordinates + c];
-			for (int part = 0; k >= 0 && part < 5; part++) {
-				int slot = info->slots[5 * c + part];
-				if (slot >= 0)
-					in[slot * lanes + lane] = from[part][k];
-			}
-		}
+	double *in = group->in + (size_t)block * (size_t)(info->inputs * lanes);
+	const int *source = group->source + (size_t)block * (size_t)(group->slots * lanes);
+	for (int k = 0; k < group->slots; k++, source += lanes) {
+		double *to = in + group->slot[k] * lanes;
+		for (int lane = 0; lane < lanes; lane++)
+			to[lane] = model->state[source[lane]];
+	}
 }
 
 static void add_rows(const rs_kernel_info *info, const int *index, const double *rows, double *r)
@@ -61,14 +47,18 @@ static void evaluate(rs_model *model, const double *q, const double *u, const do
 {
 	_Alignas(64) double rows[RS_MAX_COORDINATES * 8], entries[RS_MAX_ENTRIES * 8];
 	int lanes = rs_kernel_lanes();
-	trigonometry(model, q);
+	size_t n = (size_t)model->coordinates;
+	memcpy(model->state, q, n * sizeof *q);
+	memcpy(model->state + n, u, n * sizeof *u);
+	memcpy(model->state + 2 * n, a, n * sizeof *a);
+	rs_model_trigonometry(model);
 	for (int kernel = 0; kernel < rs_kernel_count(); kernel++) {
 		const rs_kernel_info *info = rs_kernel_describe(kernel);
 		rs_group *group = model->groups + kernel;
 		for (int block = 0; block < group->blocks; block++) {
 			double *in = group->in + (size_t)block * (size_t)(info->inputs * lanes);
 			const int *index = group->index + block * lanes * info->coordinates;
-			gather(model, info, index, in, q, u, a);
+			rs_group_gather(model, group, info, block);
 			rs_kernel_call(kernel, in, group->laws + block * lanes, seed, rows, S ? entries : NULL);
 			if (r)
 				add_rows(info, index, rows, r);

@@ -12,4 +12,11 @@
 #define RS_CLONES
 #endif
 
+/* Into each clone of its caller. */
+#if defined(__GNUC__)
+#define RS_INLINE inline __attribute__((always_inline))
+#else
+#define RS_INLINE inline
+#endif
+
 #endif

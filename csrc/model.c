@@ -13,13 +13,17 @@ rs_model *rs_model_create(int coordinates, const unsigned char *is_angle)
 	model->coordinates = coordinates;
 	model->groups = calloc((size_t)rs_kernel_count(), sizeof *model->groups);
 	model->is_angle = malloc((size_t)coordinates);
-	model->sine = malloc(2 * (size_t)coordinates * sizeof(double));
-	if (!model->groups || !model->is_angle || !model->sine) {
+	model->angle = malloc((size_t)coordinates * sizeof(int));
+	model->state = calloc(5 * (size_t)coordinates + 2, sizeof(double));
+	if (!model->groups || !model->is_angle || !model->angle || !model->state) {
 		rs_model_free(model);
 		return NULL;
 	}
-	model->cosine = model->sine + coordinates;
+	model->state[5 * coordinates + 1] = 1.0;
 	memcpy(model->is_angle, is_angle, (size_t)coordinates);
+	for (int k = 0; k < coordinates; k++)
+		if (is_angle[k])
+			model->angle[model->angles++] = k;
 	return model;
 }
 
@@ -28,6 +32,8 @@ static void free_group(rs_group *group)
 	free(group->in);
 	free(group->index);
 	free((void *)group->laws);
+	free(group->slot);
+	free(group->source);
 }
 
 void rs_model_free(rs_model *model)
@@ -38,7 +44,8 @@ void rs_model_free(rs_model *model)
 		free_group(model->groups + kernel);
 	free(model->groups);
 	free(model->is_angle);
-	free(model->sine);
+	free(model->angle);
+	free(model->state);
 	free(model);
 }
 
@@ -60,7 +67,9 @@ static int allocate_group(rs_group *group, const rs_kernel_info *info, int count
 	group->in = aligned_alloc(64, (bytes + 63) / 64 * 64);
 	group->index = malloc(filled * (size_t)info->coordinates * sizeof(int));
 	group->laws = malloc(filled * sizeof *group->laws);
-	return group->in && group->index && group->laws ? RS_OK : RS_NO_MEMORY;
+	group->slot = malloc(5 * (size_t)info->coordinates * sizeof(short));
+	group->source = malloc(5 * filled * (size_t)info->coordinates * sizeof(int));
+	return group->in && group->index && group->laws && group->slot && group->source ? RS_OK : RS_NO_MEMORY;
 }
 
 /* Unfilled lanes repeat the first instance, so that they compute numbers, and touch nothing. */
@@ -74,15 +83,27 @@ static void fill_group(rs_group *group, const rs_kernel_info *info, const double
 		double *block = group->in + (size_t)(k / lanes) * (size_t)(info->inputs * lanes) + k % lanes;
 		for (int slot = 0; slot < info->inputs; slot++)
 			block[slot * lanes] = in[(size_t)from * (size_t)info->inputs + (size_t)slot];
-		for (int c = 0; c < size; c++) {
+		for (int c = 0; c < size; c++)
 			group->index[k * size + c] = real ? index[k * size + c] : -1;
-			const short *slots = info->slots + 5 * c;
-			for (int part = 0; part < 5; part++)
-				if (slots[part] >= 0)
-					block[slots[part] * lanes] = part == 4 ? 1.0 : 0.0;
-		}
 		group->laws[k] = laws && real ? laws[k] : &no_law;
 	}
+}
+
+/* Which inputs come from the state, and from where; coordinates that do not exist are zero, their cosines one. */
+static void fill_sources(rs_group *group, const rs_kernel_info *info, int n)
+{
+	int lanes = rs_kernel_lanes(), filled = 0, coordinates = info->coordinates;
+	for (int c = 0; c < coordinates; c++)
+		for (int part = 0; part < 5; part++)
+			if (info->slots[5 * c + part] >= 0)
+				group->slot[group->slots++] = info->slots[5 * c + part];
+	for (int block = 0; block < group->blocks; block++)
+		for (int c = 0; c < coordinates; c++)
+			for (int part = 0; part < 5; part++)
+				for (int lane = 0; info->slots[5 * c + part] >= 0 && lane < lanes; lane++) {
+					int k = group->index[(block * lanes + lane) * coordinates + c];
+					group->source[filled++] = k >= 0 ? part * n + k : 5 * n + (part == 4);
+				}
 }
 
 int rs_model_add(rs_model *model, int kernel, int count, const double *in, const int *index,
@@ -102,6 +123,7 @@ int rs_model_add(rs_model *model, int kernel, int count, const double *in, const
 		return RS_NO_MEMORY;
 	}
 	fill_group(group, info, in, index, laws);
+	fill_sources(group, info, model->coordinates);
 	return RS_OK;
 }
 

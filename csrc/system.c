@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Evaluation of a system: kernels, elimination of internal coordinates eight elements at a time,
+ * rows and entries straight to their places in the blocks. system_create.c finds the places. */
+#include <math.h>
+#include <string.h>
+
+#include "dispatch.h"
+#include "system.h"
+
+enum { LANES = 8 };
+
+static RS_INLINE double *lane(double *of, int k, int lanes)
+{
+	return of + k * lanes;
+}
+
+/* Eliminates the internal coordinate of a block of lanes from its pencil; keeps c/p, w, 1/p. */
+RS_CLONES
+static void eliminate_entries(const rs_kernel_info *info, int lanes, double *entries, double *kept)
+{
+	int last = info->coordinates - 1;
+	double *inverse = lane(kept, RS_KEPT_INVERSE, lanes);
+	for (int e = 0; e < info->entries; e++) {
+		const double *from = entries + e * lanes;
+		int row = info->row[e], column = info->column[e];
+		if (row == last && column == last)
+			for (int i = 0; i < lanes; i++)
+				inverse[i] = from[i] != 0.0 ? 1.0 / from[i] : 0.0; /* 0: this lane has no such coordinate */
+		else if (row == last)
+			memcpy(lane(kept, RS_KEPT_ROW + column, lanes), from, (size_t)lanes * sizeof *from);
+		else if (column == last)
+			memcpy(lane(kept, row, lanes), from, (size_t)lanes * sizeof *from);
+	}
+	for (int c = 0; c < last; c++)
+		for (int i = 0; i < lanes; i++)
+			kept[c * lanes + i] *= inverse[i];
+	for (int e = 0; e < info->entries; e++) {
+		int row = info->row[e], column = info->column[e];
+		if (row == last || column == last)
+			continue;
+		double *to = entries + e * lanes;
+		const double *c = kept + row * lanes, *w = kept + (RS_KEPT_ROW + column) * lanes;
+		for (int i = 0; i < lanes; i++)
+			to[i] -= c[i] * w[i];
+	}
+}
+
+static RS_INLINE void eliminate_rows(int last, int lanes, double *rows, double *kept, int inner)
+{
+	double *g = lane(kept, RS_KEPT_G, lanes);
+	memcpy(g, rows + last * lanes, (size_t)lanes * sizeof *g);
+	for (int c = 0; inner && c < last; c++)
+		for (int i = 0; i < lanes; i++)
+			rows[c * lanes + i] -= kept[c * lanes + i] * g[i];
+}
+
+static RS_INLINE void add(double *to, const int *place, const double *values, int count)
+{
+	for (int k = 0; k < count; k++)
+		to[place[k]] += values[k];
+}
+
+static void capture(rs_system *system, int kernel, int block, int lanes, const double *rows, int *next)
+{
+	for (; *next < system->captures; ++*next) {
+		rs_capture *wanted = system->capture + *next;
+		if (wanted->kernel != kernel || wanted->instance / lanes != block)
+			return;
+		wanted->value = rows[wanted->row * lanes + wanted->instance % lanes];
+	}
+}
+
+static void evaluate_group(rs_system *system, int kernel, const double *seed, int inner, int *next)
+{
+	_Alignas(64) double rows[RS_MAX_COORDINATES * LANES], entries[RS_MAX_ENTRIES * LANES];
+	const rs_kernel_info *info = rs_kernel_describe(kernel);
+	const rs_group *group = system->model->groups + kernel;
+	rs_scatter *scatter = system->scatter + kernel;
+	int lanes = rs_kernel_lanes(), coordinates = info->coordinates * lanes;
+	for (int block = 0; block < group->blocks; block++) {
+		double *in = group->in + (size_t)block * (size_t)(info->inputs * lanes);
+		rs_group_gather(system->model, group, info, block);
+		rs_kernel_call(kernel, in, group->laws + block * lanes, seed, rows, seed ? entries : NULL);
+		if (system->capturing)
+			capture(system, kernel, block, lanes, rows, next);
+		if (scatter->internal >= 0 && scatter->inner[block]) {
+			double *kept = scatter->kept + (size_t)block * (size_t)(RS_KEPT * lanes);
+			if (seed && inner)
+				eliminate_entries(info, lanes, entries, kept);
+			eliminate_rows(scatter->internal, lanes, rows, kept, inner);
+		}
+		add(system->r, scatter->row + block * coordinates, rows, coordinates);
+		if (seed)
+			add(system->lu->values, scatter->entry + (size_t)block * (size_t)(info->entries * lanes), entries,
+			    info->entries * lanes);
+	}
+}
+
+/* Holds and applied forces. */
+static void add_own(rs_system *system, const double *seed)
+{
+	const double *q = system->model->state, *u = q + system->n;
+	for (int k = 0; k < system->second; k++)
+		system->r[system->place[k]] -= system->force[k];
+	for (int k = 0; k < system->holds; k++) {
+		const rs_hold *hold = system->hold + k;
+		system->r[hold->place] += hold->stiffness * q[hold->coordinate] + hold->damping * u[hold->coordinate];
+		if (seed)
+			system->lu->values[hold->diagonal] += seed[0] * hold->stiffness + seed[1] * hold->damping;
+	}
+}
+
+void rs_system_evaluate(rs_system *system, const double *seed, int inner)
+{
+	int next = 0;
+	memset(system->r, 0, (size_t)system->size * sizeof(double));
+	if (seed)
+		memset(system->lu->values, 0, (size_t)system->lu->values_size * sizeof(double));
+	rs_model_trigonometry(system->model);
+	for (int kernel = 0; kernel < rs_kernel_count(); kernel++)
+		if (system->model->groups[kernel].count)
+			evaluate_group(system, kernel, seed, inner, &next);
+	add_own(system, seed);
+	system->capturing = 0;
+}
+
+void rs_system_load(rs_system *system, const double *b)
+{
+	int lanes = rs_kernel_lanes();
+	memset(system->r, 0, (size_t)system->size * sizeof(double));
+	for (int k = 0; k < system->second; k++)
+		system->r[system->place[k]] = -b[k];
+	for (int kernel = 0; kernel < rs_kernel_count(); kernel++) {
+		const rs_scatter *scatter = system->scatter + kernel;
+		const rs_group *group = system->model->groups + kernel;
+		int size = rs_kernel_describe(kernel)->coordinates;
+		for (int k = 0; scatter->internal >= 0 && k < group->count; k++) {
+			double *kept = scatter->kept + (size_t)(k / lanes) * (size_t)(RS_KEPT * lanes) + k % lanes;
+			const int *row = scatter->row + k / lanes * size * lanes + k % lanes;
+			int own = group->index[k * size + scatter->internal];
+			if (own < 0)
+				continue;
+			kept[RS_KEPT_G * lanes] = -b[own];
+			for (int c = 0; c < scatter->internal; c++)
+				system->r[row[c * lanes]] += kept[c * lanes] * b[own];
+		}
+	}
+}
+
+/* ds = -(g + w dq)/p of one kernel's internal coordinates. */
+static void recover(const rs_system *system, int kernel, const double *x, double *d)
+{
+	const rs_scatter *scatter = system->scatter + kernel;
+	const rs_group *group = system->model->groups + kernel;
+	int lanes = rs_kernel_lanes(), size = rs_kernel_describe(kernel)->coordinates;
+	for (int block = 0; block < group->blocks; block++) {
+		const double *kept = scatter->kept + (size_t)block * (size_t)(RS_KEPT * lanes);
+		const int *row = scatter->row + block * size * lanes;
+		double sum[LANES];
+		if (!scatter->inner[block])
+			continue;
+		for (int i = 0; i < lanes; i++)
+			sum[i] = kept[RS_KEPT_G * lanes + i];
+		for (int c = 0; c < scatter->internal; c++)
+			for (int i = 0; i < lanes; i++)
+				sum[i] += kept[(RS_KEPT_ROW + c) * lanes + i] * x[row[c * lanes + i]];
+		for (int i = 0; i < lanes; i++) {
+			int own = group->index[(block * lanes + i) * size + scatter->internal];
+			if (own >= 0)
+				d[own] = -sum[i] * kept[RS_KEPT_INVERSE * lanes + i];
+		}
+	}
+}
+
+void rs_system_solve(rs_system *system, double *d)
+{
+	double *x = system->r;
+	for (int k = 0; k < system->size; k++)
+		x[k] = -x[k];
+	memset(x + system->size, 0, RS_BLOCK * sizeof *x);
+	rs_block_lu_solve(system->lu, x);
+	for (int k = 0; k < system->second; k++)
+		d[k] = x[system->place[k]];
+	for (int kernel = 0; kernel < rs_kernel_count(); kernel++)
+		if (system->scatter[kernel].internal >= 0)
+			recover(system, kernel, x, d);
+}
+
+int rs_system_not_finite(const rs_system *system)
+{
+	for (int k = 0; k < system->second; k++)
+		if (!isfinite(system->r[system->place[k]]))
+			return k;
+	return -1;
+}
