@@ -132,8 +132,8 @@ int rs_track_rails(const rs_track *track, int n, const double *s, double *rails,
 int rs_track_poses(const rs_track *track, int n, const double *s1, const double *s2, const double *V,
                    const double *offset1, const double *offset2, rs_track_pose *poses, int *failed);
 
-rs_track *rs_track_create(int pieces, const rs_track_piece *piece, int kinks, const double *kink, int jumps,
-                          const double *jump);
+rs_track *rs_track_create(int pieces, const double *joint, const rs_track_piece *piece, int kinks, const double *kink,
+                          int jumps, const double *jump);
 int rs_track_add_rails(rs_track *track, double start, double step, int count, const double *coefficients,
                        const double *after);
 void rs_track_free(rs_track *track);

@@ -34,6 +34,26 @@
  * rs_track_jumps       those of them where the turning itself jumps (only on a track made with rounding = 0);
  *                      a body that passes one receives a velocity step that no integrator sees: refuse it
  * rs_track_next_kink   the first kink behind s (> s), INFINITY when there is none
+ *
+ * rs_track_frames, rs_track_rails, rs_track_poses   the same at n places
+ *   Given     s, s1, s2   n, m
+ *             V           n, m/s
+ *             offset1 offset2   3 x n by rows of 3, m
+ *   Returned  frames, rails (n x RS_TRACK_RAILS), poses: n each
+ *             failed      number of the place that failed, n when none did; those before it are as computed
+ *   Status    of the place that failed
+ *
+ * rs_track_create      a track; free with rs_track_free
+ *   Given     pieces  n > 0
+ *             joint   n + 1, m, increasing: ends of the pieces
+ *             piece   n, copied; heading and place are the integrals of the others
+ *             kink    kinks, m, increasing; jump: jumps, m, increasing
+ *   Returned  the track, or NULL (no memory, or n <= 0)
+ * rs_track_add_rails   a layer of rail deviations, summed with the others; only before the track is shared
+ *   Given     start   m, step: m, > 0, count >= 2: uniform cubic B-spline over start + k step, 0 <= k < count
+ *             coefficients  (count + 2) x 4, first that of k = -1: left y, left z, right y, right z, m
+ *             after   4, m, deviation behind the last k (before the first one it is zero)
+ *   Status    RS_OK, RS_BAD_SIZE, RS_NO_MEMORY
  */
 #ifndef RS_TRACK_H
 #define RS_TRACK_H
