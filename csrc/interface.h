@@ -90,3 +90,108 @@ enum { RS_OUT_OF_TABLE = 6 };
 enum { RS_ZONES = 3, RS_PLACE_SIZE = 4 };
 
 typedef struct rs_contact_table rs_contact_table;
+
+enum { RS_OUT_OF_TRACK = 20 };
+enum { RS_TRACK_POWERS = 8, RS_TRACK_PLACE_POWERS = 14, RS_TRACK_RAILS = 8 };
+
+typedef struct rs_track rs_track;
+typedef struct {
+	double place[3];         /* m, origin of the frame, inertial */
+	double place_low[3];     /* m, what place lost in rounding: the origin is place + place_low */
+	double attitude[9];      /* P by rows: frame to inertial components */
+	double turning[3];       /* 1/m, angular velocity per metre of track, frame components */
+	double turning_rate[3];  /* 1/m^2, d turning/ds */
+} rs_track_frame;
+typedef struct {
+	double D[3];    /* m, design place of body 2 from that of body 1, frame 1 */
+	double C[9];    /* by rows: frame 2 to frame 1 components */
+	double dD[3];   /* m/s, rate of D seen in frame 1 */
+	double wf[3];   /* rad/s, angular velocity of frame 2 in frame 1, components of frame 2 */
+} rs_track_pose;
+typedef struct {
+	double middle, half;                   /* m, x = (s - middle)/half, -1 <= x <= 1 */
+	double curvature[8];                   /* 1/m, powers of x, lowest first */
+	double cant[8];                        /* -, sin(cant angle) */
+	double slope[8];                       /* -, sin(slope), + uphill */
+	double heading[9];                     /* rad */
+	double place[3][14];                   /* m, from base, inertial */
+	double base[3], base_low[3];           /* m, place at middle */
+} rs_track_piece;
+
+int rs_track_frame_at(const rs_track *track, double s, rs_track_frame *frame);
+int rs_track_rails_at(const rs_track *track, double s, double *rails);
+void rs_track_pose_of(const rs_track_frame *first, const rs_track_frame *second, double V, const double *offset1,
+                      const double *offset2, rs_track_pose *pose);
+void rs_track_limits(const rs_track *track, double *start, double *end);
+int rs_track_kinks(const rs_track *track, const double **kinks);
+int rs_track_jumps(const rs_track *track, const double **jumps);
+double rs_track_next_kink(const rs_track *track, double s);
+
+int rs_track_frames(const rs_track *track, int n, const double *s, rs_track_frame *frames, int *failed);
+int rs_track_rails(const rs_track *track, int n, const double *s, double *rails, int *failed);
+int rs_track_poses(const rs_track *track, int n, const double *s1, const double *s2, const double *V,
+                   const double *offset1, const double *offset2, rs_track_pose *poses, int *failed);
+
+rs_track *rs_track_create(int pieces, const double *joint, const rs_track_piece *piece, int kinks, const double *kink,
+                          int jumps, const double *jump);
+int rs_track_add_rails(rs_track *track, double start, double step, int count, const double *coefficients,
+                       const double *after);
+void rs_track_free(rs_track *track);
+
+enum { RS_SINGULAR = 30, RS_STOPPED = 31 };
+enum {
+	RS_CHANNEL_POSITION = 0,
+	RS_CHANNEL_RATE = 1,
+	RS_CHANNEL_ACCELERATION = 2,
+	RS_CHANNEL_ELEMENT = 3,
+	RS_CHANNEL_WHEEL = 4,
+	RS_CHANNEL_PATCH = 5
+};
+
+typedef struct rs_integrator rs_integrator;
+typedef struct rs_motion rs_motion;
+typedef struct {
+	int kind;        /* RS_CHANNEL_... */
+	int number;      /* coordinate; kernel of an element; output of a wheel or patch */
+	int instance;    /* of the kernel */
+	int row;         /* of the instance's residual */
+} rs_channel;
+typedef struct {
+	int status;            /* of the last step */
+	int coordinate;        /* that a failed step stuck at, -1: none */
+	double time;           /* s, of the state */
+	double change;         /* m or rad, what the last iteration of the last step changed most */
+	long long steps;       /* done since the start */
+	long long residuals;   /* evaluations of the residual alone */
+	long long pencils;     /* evaluations with the pencil, each factored */
+	long long solves;
+} rs_run_report;
+typedef int (*rs_controller)(void *context, double time, const double *q, const double *u, const double *a);
+
+rs_integrator *rs_integrator_create(rs_model *model, int second, int blocks, const int *block, double step,
+                                    double rho, double tolerance);
+void rs_integrator_free(rs_integrator *integrator);
+int rs_integrator_start(rs_integrator *integrator, double time, const double *q, const double *u);
+int rs_integrator_hold(rs_integrator *integrator, int count, const int *coordinate, const double *stiffness,
+                       const double *damping);
+double *rs_integrator_force(rs_integrator *integrator);
+int rs_integrator_kinks(rs_integrator *integrator, int count, const double *time);
+int rs_integrator_channels(rs_integrator *integrator, int count, const rs_channel *channel);
+void rs_integrator_controller(rs_integrator *integrator, rs_controller controller, void *context, int every);
+int rs_integrator_sample(rs_integrator *integrator, double *row);
+int rs_integrator_run(rs_integrator *integrator, int steps, int every, double *samples, int *sampled);
+void rs_integrator_state(const rs_integrator *integrator, double *q, double *u, double *a);
+const rs_run_report *rs_integrator_report(const rs_integrator *integrator);
+int rs_integrator_residual(rs_integrator *integrator, double time, const double *q, const double *u, const double *a, double *r);
+int rs_integrator_solve(rs_integrator *integrator, const double *q, const double *u, const double *a,
+                        const double *seed, const double *b, double *x);
+int rs_integrator_fill(const rs_integrator *integrator, int *operations, int *values);
+
+rs_motion *rs_motion_create(const rs_track *track, int frames, const double *x, int pieces, const double *time,
+                            const double *place, const double *speed, const double *acceleration, double gravity);
+void rs_motion_free(rs_motion *motion);
+int rs_motion_bodies(rs_motion *motion, rs_model *model, int kernel, const int *frame);
+int rs_motion_pairs(rs_motion *motion, rs_model *model, int kernel, int count, const int *instance, const int *frames,
+                    const double *offsets);
+int rs_motion_wheelsets(rs_motion *motion, int count, const int *frame);
+void rs_integrator_motion(rs_integrator *integrator, rs_motion *motion);

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Motion of the track frames along the track, and what of it the kernels' inputs take.
+ *
+ * rs_motion_create      speed over time in pieces of constant acceleration, on a track or (NULL) on straight level track
+ *   Given     x         frames, m: places of the frames ahead of the vehicle's centre; each frame is at s(t) + x
+ *             time      pieces, s, increasing; the first and the last piece reach on without end
+ *             place speed acceleration   pieces: s (m), V (m/s) and dV (m/s^2) at the start of each
+ *             gravity   m/s^2
+ *   Returned  the motion, or NULL (no memory, nothing given); the track is kept, not copied
+ * rs_motion_bodies      frames of all instances of a kernel: its inputs V, w and (bodies) dV, dw, grav are kept up to date
+ *   Given     frame     one an instance
+ * rs_motion_pairs       elements that join two frames: their inputs D, C, dD, wf are kept up to date
+ *   Given     instance  count, numbers of the kernel's instances
+ *             frames    2 count, of the first and the second end
+ *             offsets   6 count, m, design place of each end's body in its frame
+ * rs_motion_wheelsets   frames at which the wheel-rail forces want the lie of the rails
+ *   Status    RS_OK, RS_NO_MEMORY, RS_BAD_INDEX
+ */
+#ifndef RS_MOTION_H
+#define RS_MOTION_H
+
+#include "model.h"
+#include "track.h"
+
+typedef struct {
+	int frame, inputs;
+	double *to;               /* first input of a lane */
+} rs_moved_body;
+
+typedef struct {
+	int first, second;
+	double offset1[3], offset2[3];
+	double *to;
+} rs_moved_pair;
+
+struct rs_motion {
+	const rs_track *track;
+	int frames, pieces, bodies, pairs, wheelsets;
+	double *x;                /* frames */
+	rs_track_frame *frame;    /* frames */
+	double *time, *place, *start_speed, *acceleration;  /* pieces */
+	double gravity;
+	double V, dV;             /* at the time last asked for */
+	rs_moved_body *body;
+	rs_moved_pair *pair;
+	int *wheelset;            /* frames of the wheelsets */
+	double *w, *rail;         /* 3 and RS_TRACK_RAILS a wheelset */
+};
+
+/* Everything at a time; status of the track. */
+int rs_motion_set(rs_motion *motion, double time);
+
+#endif
