@@ -4,17 +4,19 @@
 #include <math.h>
 #include <string.h>
 
+#include "lanes.h"
 #include "model.h"
 
+RS_CLONES
 void rs_group_gather(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
 {
-	int lanes = rs_kernel_lanes();
-	double *in = group->in + (size_t)block * (size_t)(info->inputs * lanes);
-	const int *source = group->source + (size_t)block * (size_t)(group->slots * lanes);
-	for (int k = 0; k < group->slots; k++, source += lanes) {
-		double *to = in + group->slot[k] * lanes;
-		for (int lane = 0; lane < lanes; lane++)
-			to[lane] = model->state[source[lane]];
+	double *restrict in = group->in + (size_t)block * (size_t)(info->inputs * RS_LANES);
+	const double *restrict state = model->state;
+	const int *restrict source = group->source + (size_t)block * (size_t)(group->slots * RS_LANES);
+	for (int k = 0; k < group->slots; k++, source += RS_LANES) {
+		double *to = in + group->slot[k] * RS_LANES;
+		for (int lane = 0; lane < RS_LANES; lane++)
+			to[lane] = state[source[lane]];
 	}
 }
 

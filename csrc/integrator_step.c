@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "dispatch.h"
 #include "integrator.h"
 
 /* Contraction above which new factors are cheaper than more iterations; iterations with one set of factors; sets a step. */
@@ -25,66 +26,88 @@ typedef struct {
 } scheme;
 
 /* y'_n+1 is extrapolated along the last step; everything else follows. */
+RS_CLONES
 static void predict(rs_integrator *it, double h)
 {
-	double *q = it->system->model->state, *u = q + it->n, *a = u + it->n;
+	int n = it->n, second = it->second;
+	double *restrict q = it->system->model->state, *restrict u = q + n, *restrict a = u + n;
+	const double *restrict qn = it->q, *restrict un = it->u, *restrict an = it->a, *restrict vn = it->v, *restrict before = it->before;
 	double along = it->before_step > 0.0 ? h / it->before_step : 0.0;
-	double am = it->am, af = it->af, old = h * (1.0 - it->gamma), new = h * it->gamma;
-	for (int k = 0; k < it->second; k++) {
-		double a1 = it->a[k] + along * (it->a[k] - it->before[k]);
-		a[k] = it->a[k] + am * (a1 - it->a[k]);
-		u[k] = it->u[k] + af * (old * it->a[k] + new * a1);
-		double v1 = it->v[k] + (u[k] - it->v[k]) / am;
-		q[k] = it->q[k] + af * (old * it->v[k] + new * v1);
+	double am = it->am, af = it->af, per_am = 1.0 / am, old = h * (1.0 - it->gamma), new = h * it->gamma;
+	for (int k = 0; k < second; k++) {
+		double a1 = an[k] + along * (an[k] - before[k]);
+		a[k] = an[k] + am * (a1 - an[k]);
+		u[k] = un[k] + af * (old * an[k] + new * a1);
+		double v1 = vn[k] + per_am * (u[k] - vn[k]);
+		q[k] = qn[k] + af * (old * vn[k] + new * v1);
 	}
-	for (int k = it->second; k < it->n; k++) {
-		double w1 = it->u[k] + along * (it->u[k] - it->before[k]);
-		u[k] = it->u[k] + am * (w1 - it->u[k]);
-		q[k] = it->q[k] + af * (old * it->u[k] + new * w1);
+	for (int k = second; k < n; k++) {
+		double w1 = un[k] + along * (un[k] - before[k]);
+		u[k] = un[k] + am * (w1 - un[k]);
+		q[k] = qn[k] + af * (old * un[k] + new * w1);
 		a[k] = 0.0;
 	}
 }
 
+RS_CLONES
 static void change(rs_integrator *it, const scheme *with)
 {
-	double *q = it->system->model->state, *u = q + it->n, *a = u + it->n;
-	for (int k = 0; k < it->n; k++) {
-		q[k] += it->d[k];
-		u[k] += with->seed[1] * it->d[k];
+	int n = it->n, second = it->second;
+	double *restrict q = it->system->model->state, *restrict u = q + n, *restrict a = u + n;
+	const double *restrict d = it->d;
+	double cu = with->seed[1], ca = with->seed[2];
+	for (int k = 0; k < n; k++) {
+		q[k] += d[k];
+		u[k] += cu * d[k];
 	}
-	for (int k = 0; k < it->second; k++)
-		a[k] += with->seed[2] * it->d[k];
+	for (int k = 0; k < second; k++)
+		a[k] += ca * d[k];
 }
 
+RS_CLONES
 static void accept(rs_integrator *it, double h)
 {
-	const double *q = it->system->model->state, *u = q + it->n, *a = u + it->n;
+	int n = it->n, second = it->second;
+	const double *restrict q = it->system->model->state, *restrict u = q + n, *restrict a = u + n;
+	double *restrict qn = it->q, *restrict un = it->u, *restrict an = it->a, *restrict vn = it->v, *restrict before = it->before;
 	double to_end = 1.0 / it->af, to_new = 1.0 / it->am;
-	for (int k = 0; k < it->second; k++) {
-		it->before[k] = it->a[k];
-		it->q[k] += to_end * (q[k] - it->q[k]);
-		it->v[k] += to_new * (u[k] - it->v[k]);
-		it->u[k] += to_end * (u[k] - it->u[k]);
-		it->a[k] += to_new * (a[k] - it->a[k]);
+	for (int k = 0; k < second; k++) {
+		before[k] = an[k];
+		qn[k] += to_end * (q[k] - qn[k]);
+		vn[k] += to_new * (u[k] - vn[k]);
+		un[k] += to_end * (u[k] - un[k]);
+		an[k] += to_new * (a[k] - an[k]);
 	}
-	for (int k = it->second; k < it->n; k++) {
-		it->before[k] = it->u[k];
-		it->q[k] += to_end * (q[k] - it->q[k]);
-		it->u[k] += to_new * (u[k] - it->u[k]);
+	for (int k = second; k < n; k++) {
+		before[k] = un[k];
+		qn[k] += to_end * (q[k] - qn[k]);
+		un[k] += to_new * (u[k] - un[k]);
 	}
 	it->before_step = h;
 }
 
 /* Largest change; infinite where one is not a number. */
-static double size_of(rs_integrator *it)
+RS_CLONES
+static double size_of(const rs_integrator *it)
 {
-	double largest = 0.0, sum = 0.0;
-	for (int k = 0; k < it->n; k++) {
-		double size = fabs(it->d[k]);
-		largest = size > largest ? size : largest;
-		sum += size;
+	double largest[8] = {0.0}, sum[8] = {0.0}, all = 0.0, most = 0.0;
+	int n = it->n, k = 0;
+	const double *d = it->d;
+	for (; k + 8 <= n; k += 8)
+		for (int i = 0; i < 8; i++) {
+			double size = fabs(d[k + i]);
+			largest[i] = size > largest[i] ? size : largest[i];
+			sum[i] += size;
+		}
+	for (; k < n; k++) {
+		most = fabs(d[k]) > most ? fabs(d[k]) : most;
+		all += fabs(d[k]);
 	}
-	return isfinite(sum) ? largest : INFINITY;
+	for (int i = 0; i < 8; i++) {
+		most = largest[i] > most ? largest[i] : most;
+		all += sum[i];
+	}
+	return isfinite(all) ? most : INFINITY;
 }
 
 static int worst_of(const rs_integrator *it)

@@ -5,53 +5,54 @@
 #include <string.h>
 
 #include "dispatch.h"
+#include "lanes.h"
 #include "system.h"
 
-enum { LANES = 8 };
+enum { LANES = RS_LANES };
 
-static RS_INLINE double *lane(double *of, int k, int lanes)
+static RS_INLINE double *lane(double *of, int k)
 {
-	return of + k * lanes;
+	return of + k * LANES;
 }
 
 /* Eliminates the internal coordinate of a block of lanes from its pencil; keeps c/p, w, 1/p. */
 RS_CLONES
-static void eliminate_entries(const rs_kernel_info *info, int lanes, double *entries, double *kept)
+static void eliminate_entries(const rs_kernel_info *info, double *restrict entries, double *restrict kept)
 {
 	int last = info->coordinates - 1;
-	double *inverse = lane(kept, RS_KEPT_INVERSE, lanes);
+	double *inverse = lane(kept, RS_KEPT_INVERSE);
 	for (int e = 0; e < info->entries; e++) {
-		const double *from = entries + e * lanes;
+		const double *from = entries + e * LANES;
 		int row = info->row[e], column = info->column[e];
 		if (row == last && column == last)
-			for (int i = 0; i < lanes; i++)
+			for (int i = 0; i < LANES; i++)
 				inverse[i] = from[i] != 0.0 ? 1.0 / from[i] : 0.0; /* 0: this lane has no such coordinate */
 		else if (row == last)
-			memcpy(lane(kept, RS_KEPT_ROW + column, lanes), from, (size_t)lanes * sizeof *from);
+			memcpy(lane(kept, RS_KEPT_ROW + column), from, (size_t)LANES * sizeof *from);
 		else if (column == last)
-			memcpy(lane(kept, row, lanes), from, (size_t)lanes * sizeof *from);
+			memcpy(lane(kept, row), from, (size_t)LANES * sizeof *from);
 	}
 	for (int c = 0; c < last; c++)
-		for (int i = 0; i < lanes; i++)
-			kept[c * lanes + i] *= inverse[i];
+		for (int i = 0; i < LANES; i++)
+			kept[c * LANES + i] *= inverse[i];
 	for (int e = 0; e < info->entries; e++) {
 		int row = info->row[e], column = info->column[e];
 		if (row == last || column == last)
 			continue;
-		double *to = entries + e * lanes;
-		const double *c = kept + row * lanes, *w = kept + (RS_KEPT_ROW + column) * lanes;
-		for (int i = 0; i < lanes; i++)
+		double *to = entries + e * LANES;
+		const double *c = kept + row * LANES, *w = kept + (RS_KEPT_ROW + column) * LANES;
+		for (int i = 0; i < LANES; i++)
 			to[i] -= c[i] * w[i];
 	}
 }
 
-static RS_INLINE void eliminate_rows(int last, int lanes, double *rows, double *kept, int inner)
+static RS_INLINE void eliminate_rows(int last, double *restrict rows, double *restrict kept, int inner)
 {
-	double *g = lane(kept, RS_KEPT_G, lanes);
-	memcpy(g, rows + last * lanes, (size_t)lanes * sizeof *g);
+	double *g = lane(kept, RS_KEPT_G);
+	memcpy(g, rows + last * LANES, (size_t)LANES * sizeof *g);
 	for (int c = 0; inner && c < last; c++)
-		for (int i = 0; i < lanes; i++)
-			rows[c * lanes + i] -= kept[c * lanes + i] * g[i];
+		for (int i = 0; i < LANES; i++)
+			rows[c * LANES + i] -= kept[c * LANES + i] * g[i];
 }
 
 static RS_INLINE void add(double *to, const int *place, const double *values, int count)
@@ -60,13 +61,13 @@ static RS_INLINE void add(double *to, const int *place, const double *values, in
 		to[place[k]] += values[k];
 }
 
-static void capture(rs_system *system, int kernel, int block, int lanes, const double *rows, int *next)
+static void capture(rs_system *system, int kernel, int block, const double *rows, int *next)
 {
 	for (; *next < system->captures; ++*next) {
 		rs_capture *wanted = system->capture + *next;
-		if (wanted->kernel != kernel || wanted->instance / lanes != block)
+		if (wanted->kernel != kernel || wanted->instance / LANES != block)
 			return;
-		wanted->value = rows[wanted->row * lanes + wanted->instance % lanes];
+		wanted->value = rows[wanted->row * LANES + wanted->instance % LANES];
 	}
 }
 
@@ -76,23 +77,23 @@ static void evaluate_group(rs_system *system, int kernel, const double *seed, in
 	const rs_kernel_info *info = rs_kernel_describe(kernel);
 	const rs_group *group = system->model->groups + kernel;
 	rs_scatter *scatter = system->scatter + kernel;
-	int lanes = rs_kernel_lanes(), coordinates = info->coordinates * lanes;
+	int coordinates = info->coordinates * LANES;
 	for (int block = 0; block < group->blocks; block++) {
-		double *in = group->in + (size_t)block * (size_t)(info->inputs * lanes);
+		double *in = group->in + (size_t)block * (size_t)(info->inputs * LANES);
 		rs_group_gather(system->model, group, info, block);
-		rs_kernel_call(kernel, in, group->laws + block * lanes, seed, rows, seed ? entries : NULL);
+		rs_kernel_call(kernel, in, group->laws + block * LANES, seed, rows, seed ? entries : NULL);
 		if (system->capturing)
-			capture(system, kernel, block, lanes, rows, next);
+			capture(system, kernel, block, rows, next);
 		if (scatter->internal >= 0 && scatter->inner[block]) {
-			double *kept = scatter->kept + (size_t)block * (size_t)(RS_KEPT * lanes);
+			double *kept = scatter->kept + (size_t)block * (size_t)(RS_KEPT * LANES);
 			if (seed && inner)
-				eliminate_entries(info, lanes, entries, kept);
-			eliminate_rows(scatter->internal, lanes, rows, kept, inner);
+				eliminate_entries(info, entries, kept);
+			eliminate_rows(scatter->internal, rows, kept, inner);
 		}
 		add(system->r, scatter->row + block * coordinates, rows, coordinates);
 		if (seed)
-			add(system->lu->values, scatter->entry + (size_t)block * (size_t)(info->entries * lanes), entries,
-			    info->entries * lanes);
+			add(system->lu->values, scatter->entry + (size_t)block * (size_t)(info->entries * LANES), entries,
+			    info->entries * LANES);
 	}
 }
 
@@ -148,26 +149,27 @@ void rs_system_load(rs_system *system, const double *b)
 }
 
 /* ds = -(g + w dq)/p of one kernel's internal coordinates. */
+RS_CLONES
 static void recover(const rs_system *system, int kernel, const double *x, double *d)
 {
 	const rs_scatter *scatter = system->scatter + kernel;
 	const rs_group *group = system->model->groups + kernel;
-	int lanes = rs_kernel_lanes(), size = rs_kernel_describe(kernel)->coordinates;
+	int size = rs_kernel_describe(kernel)->coordinates;
 	for (int block = 0; block < group->blocks; block++) {
-		const double *kept = scatter->kept + (size_t)block * (size_t)(RS_KEPT * lanes);
-		const int *row = scatter->row + block * size * lanes;
+		const double *kept = scatter->kept + (size_t)block * (size_t)(RS_KEPT * LANES);
+		const int *row = scatter->row + block * size * LANES;
 		double sum[LANES];
 		if (!scatter->inner[block])
 			continue;
-		for (int i = 0; i < lanes; i++)
-			sum[i] = kept[RS_KEPT_G * lanes + i];
+		for (int i = 0; i < LANES; i++)
+			sum[i] = kept[RS_KEPT_G * LANES + i];
 		for (int c = 0; c < scatter->internal; c++)
-			for (int i = 0; i < lanes; i++)
-				sum[i] += kept[(RS_KEPT_ROW + c) * lanes + i] * x[row[c * lanes + i]];
-		for (int i = 0; i < lanes; i++) {
-			int own = group->index[(block * lanes + i) * size + scatter->internal];
+			for (int i = 0; i < LANES; i++)
+				sum[i] += kept[(RS_KEPT_ROW + c) * LANES + i] * x[row[c * LANES + i]];
+		for (int i = 0; i < LANES; i++) {
+			int own = group->index[(block * LANES + i) * size + scatter->internal];
 			if (own >= 0)
-				d[own] = -sum[i] * kept[RS_KEPT_INVERSE * lanes + i];
+				d[own] = -sum[i] * kept[RS_KEPT_INVERSE * LANES + i];
 		}
 	}
 }
