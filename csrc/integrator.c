@@ -65,7 +65,7 @@ void rs_integrator_place(rs_integrator *it, const double *q, const double *u, co
 
 int rs_integrator_move(rs_integrator *it, double time)
 {
-	return it->motion ? rs_motion_set(it->motion, time) : RS_OK;
+	return it->travel ? rs_travel_set(it->travel, time) : RS_OK;
 }
 
 int rs_integrator_evaluate(rs_integrator *it, const double *seed, int inner)
@@ -170,9 +170,9 @@ void rs_integrator_controller(rs_integrator *it, rs_controller controller, void 
 	it->every = every > 0 ? every : 1;
 }
 
-void rs_integrator_motion(rs_integrator *it, rs_motion *motion)
+void rs_integrator_travel(rs_integrator *it, rs_travel *travel)
 {
-	it->motion = motion;
+	it->travel = travel;
 	it->factored = 0.0;
 }
 

@@ -45,13 +45,13 @@
 #ifndef RS_INTEGRATOR_H
 #define RS_INTEGRATOR_H
 
-#include "motion.h"
+#include "travel.h"
 #include "railsym.h"
 #include "system.h"
 
 struct rs_integrator {
 	rs_system *system;
-	rs_motion *motion;         /* the caller's, or NULL: nothing moves that the model's inputs do not say */
+	rs_travel *travel;         /* the caller's, or NULL: nothing moves that the model's inputs do not say */
 	int n, second;
 	double step, am, af, gamma, tolerance;
 	double start;              /* s */

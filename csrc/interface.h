@@ -149,7 +149,7 @@ enum {
 };
 
 typedef struct rs_integrator rs_integrator;
-typedef struct rs_motion rs_motion;
+typedef struct rs_travel rs_travel;
 typedef struct {
 	int kind;        /* RS_CHANNEL_... */
 	int number;      /* coordinate; kernel of an element; output of a wheel or patch */
@@ -187,11 +187,11 @@ int rs_integrator_solve(rs_integrator *integrator, const double *q, const double
                         const double *seed, const double *b, double *x);
 int rs_integrator_fill(const rs_integrator *integrator, int *operations, int *values);
 
-rs_motion *rs_motion_create(const rs_track *track, int frames, const double *x, int pieces, const double *time,
+rs_travel *rs_travel_create(const rs_track *track, int frames, const double *x, int pieces, const double *time,
                             const double *place, const double *speed, const double *acceleration, double gravity);
-void rs_motion_free(rs_motion *motion);
-int rs_motion_bodies(rs_motion *motion, rs_model *model, int kernel, const int *frame);
-int rs_motion_pairs(rs_motion *motion, rs_model *model, int kernel, int count, const int *instance, const int *frames,
+void rs_travel_free(rs_travel *travel);
+int rs_travel_bodies(rs_travel *travel, rs_model *model, int kernel, const int *frame);
+int rs_travel_pairs(rs_travel *travel, rs_model *model, int kernel, int count, const int *instance, const int *frames,
                     const double *offsets);
-int rs_motion_wheelsets(rs_motion *motion, int count, const int *frame);
-void rs_integrator_motion(rs_integrator *integrator, rs_motion *motion);
+int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame);
+void rs_integrator_travel(rs_integrator *integrator, rs_travel *travel);

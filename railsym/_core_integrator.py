@@ -57,7 +57,7 @@ class Integrator:
                              f"{int(block.max()) + 1} bodies cannot be made: step and tolerance must be positive, rho between 0 and 1, "
                              "at most eight coordinates a body, each internal coordinate in one element")
         self._pointer = ffi.gc(made, lib.rs_integrator_free)
-        self._motion = self._callback = None
+        self._travel = self._callback = None
         self.channels = 0
 
     def start(self, time, q, u):
@@ -92,10 +92,10 @@ class Integrator:
         self._callback = function
         lib.rs_integrator_controller(self._pointer, ffi.NULL if function is None else function, context, every)
 
-    def set_motion(self, motion):
-        """A `Motion` that moves the track frames, or None."""
-        self._motion = motion
-        lib.rs_integrator_motion(self._pointer, ffi.NULL if motion is None else motion._pointer)
+    def set_travel(self, travel):
+        """A `Travel` that moves the track frames, or None."""
+        self._travel = travel
+        lib.rs_integrator_travel(self._pointer, ffi.NULL if travel is None else travel._pointer)
 
     def sample(self):
         """Channels at the present state, shape (channels,), and the status."""
@@ -148,7 +148,7 @@ class Integrator:
         return counts[0], counts[1]
 
 
-class Motion:
+class Travel:
     """Track frames that move along a track, and the inputs that follow them.
 
     Parameters
@@ -165,21 +165,21 @@ class Motion:
 
     def __init__(self, track, x, pieces, gravity, keep=None):
         columns = np.ascontiguousarray(np.asarray(pieces, dtype=float).T)
-        made = lib.rs_motion_create(ffi.NULL if track is None else track, len(x), _floats(x), columns.shape[1],
+        made = lib.rs_travel_create(ffi.NULL if track is None else track, len(x), _floats(x), columns.shape[1],
                                     *map(_floats, columns), gravity)
         if made == ffi.NULL:
             raise ModelError("the motion of the track frames cannot be made: no frames, no pieces of speed, or no memory")
-        self._pointer, self._keep = ffi.gc(made, lib.rs_motion_free), keep
+        self._pointer, self._keep = ffi.gc(made, lib.rs_travel_free), keep
 
     def add_bodies(self, assembly, kernel, frames):
         """Kernel number and the frame of each of its instances."""
-        _check(lib.rs_motion_bodies(self._pointer, assembly._model, kernel, _integers(frames)), "frames of bodies")
+        _check(lib.rs_travel_bodies(self._pointer, assembly._model, kernel, _integers(frames)), "frames of bodies")
 
     def add_pairs(self, assembly, kernel, instances, frames, offsets):
         """Instances (count,) of a kernel, frames (count, 2) and offsets (count, 2, 3) of their ends."""
-        _check(lib.rs_motion_pairs(self._pointer, assembly._model, kernel, len(instances), _integers(instances), _integers(frames),
+        _check(lib.rs_travel_pairs(self._pointer, assembly._model, kernel, len(instances), _integers(instances), _integers(frames),
                                    _floats(offsets)), "frames of elements")
 
     def add_wheelsets(self, frames):
         """Frames of the wheelsets."""
-        _check(lib.rs_motion_wheelsets(self._pointer, len(frames), _integers(frames)), "frames of wheelsets")
+        _check(lib.rs_travel_wheelsets(self._pointer, len(frames), _integers(frames)), "frames of wheelsets")

@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Motion of the track frames along the track, and what of it the kernels' inputs take.
  *
- * rs_motion_create      speed over time in pieces of constant acceleration, on a track or (NULL) on straight level track
+ * rs_travel_create      speed over time in pieces of constant acceleration, on a track or (NULL) on straight level track
  *   Given     x         frames, m: places of the frames ahead of the vehicle's centre; each frame is at s(t) + x
  *             time      pieces, s, increasing; the first and the last piece reach on without end
  *             place speed acceleration   pieces: s (m), V (m/s) and dV (m/s^2) at the start of each
  *             gravity   m/s^2
  *   Returned  the motion, or NULL (no memory, nothing given); the track is kept, not copied
- * rs_motion_bodies      frames of all instances of a kernel: its inputs V, w and (bodies) dV, dw, grav are kept up to date
+ * rs_travel_bodies      frames of all instances of a kernel: its inputs V, w and (bodies) dV, dw, grav are kept up to date
  *   Given     frame     one an instance
- * rs_motion_pairs       elements that join two frames: their inputs D, C, dD, wf are kept up to date
+ * rs_travel_pairs       elements that join two frames: their inputs D, C, dD, wf are kept up to date
  *   Given     instance  count, numbers of the kernel's instances
  *             frames    2 count, of the first and the second end
  *             offsets   6 count, m, design place of each end's body in its frame
- * rs_motion_wheelsets   frames at which the wheel-rail forces want the lie of the rails
+ * rs_travel_wheelsets   frames at which the wheel-rail forces want the lie of the rails
  *   Status    RS_OK, RS_NO_MEMORY, RS_BAD_INDEX
  */
-#ifndef RS_MOTION_H
-#define RS_MOTION_H
+#ifndef RS_TRAVEL_H
+#define RS_TRAVEL_H
 
 #include "model.h"
 #include "track.h"
@@ -33,7 +33,7 @@ typedef struct {
 	double *to;
 } rs_moved_pair;
 
-struct rs_motion {
+struct rs_travel {
 	const rs_track *track;
 	int frames, pieces, bodies, pairs, wheelsets;
 	double *x;                /* frames */
@@ -48,6 +48,6 @@ struct rs_motion {
 };
 
 /* Everything at a time; status of the track. */
-int rs_motion_set(rs_motion *motion, double time);
+int rs_travel_set(rs_travel *travel, double time);
 
 #endif

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Track frames in motion:
+ *
+ *     w = V turning,   dw = dV turning + V^2 turning',   gravity in the frame = g (third row of P)
+ *
+ * and the pose of one frame seen from another for the elements that join two. Only what moves is
+ * written: elements within one frame keep the inputs they were made with.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "travel.h"
+
+static double *copied(const double *from, int count)
+{
+	double *to = malloc((size_t)(count + 1) * sizeof *to);
+	if (to)
+		memcpy(to, from, (size_t)count * sizeof *to);
+	return to;
+}
+
+rs_travel *rs_travel_create(const rs_track *track, int frames, const double *x, int pieces, const double *time,
+                            const double *place, const double *speed, const double *acceleration, double gravity)
+{
+	rs_travel *travel = frames > 0 && pieces > 0 ? calloc(1, sizeof *travel) : NULL;
+	if (!travel)
+		return NULL;
+	travel->track = track;
+	travel->frames = frames;
+	travel->pieces = pieces;
+	travel->gravity = gravity;
+	travel->x = copied(x, frames);
+	travel->time = copied(time, pieces);
+	travel->place = copied(place, pieces);
+	travel->start_speed = copied(speed, pieces);
+	travel->acceleration = copied(acceleration, pieces);
+	travel->frame = calloc((size_t)frames, sizeof *travel->frame);
+	if (!travel->x || !travel->time || !travel->place || !travel->start_speed || !travel->acceleration || !travel->frame) {
+		rs_travel_free(travel);
+		return NULL;
+	}
+	for (int k = 0; k < frames; k++)
+		travel->frame[k].attitude[0] = travel->frame[k].attitude[4] = travel->frame[k].attitude[8] = 1.0;
+	return travel;
+}
+
+void rs_travel_free(rs_travel *travel)
+{
+	if (!travel)
+		return;
+	free(travel->x);
+	free(travel->frame);
+	free(travel->time);
+	free(travel->place);
+	free(travel->start_speed);
+	free(travel->acceleration);
+	free(travel->body);
+	free(travel->pair);
+	free(travel->wheelset);
+	free(travel->w);
+	free(travel->rail);
+	free(travel);
+}
+
+static int slot_of(const rs_kernel_info *info, const char *name)
+{
+	for (int slot = 0; slot < info->inputs; slot++)
+		if (!strcmp(info->input_names[slot], name))
+			return slot;
+	return -1;
+}
+
+/* Where an input of an instance is; others of the lane follow rs_kernel_lanes() apart. */
+static double *input_of(const rs_model *model, int kernel, int instance, int slot)
+{
+	int lanes = rs_kernel_lanes(), inputs = rs_kernel_describe(kernel)->inputs;
+	return model->groups[kernel].in + (size_t)(instance / lanes) * (size_t)(inputs * lanes) + slot * lanes + instance % lanes;
+}
+
+int rs_travel_bodies(rs_travel *travel, rs_model *model, int kernel, const int *frame)
+{
+	const rs_kernel_info *info = rs_kernel_describe(kernel);
+	int slot = info ? slot_of(info, "V") : -1;
+	if (slot < 0)
+		return RS_BAD_INDEX;
+	int count = model->groups[kernel].count;
+	rs_moved_body *body = realloc(travel->body, (size_t)(travel->bodies + count + 1) * sizeof *body);
+	if (!body)
+		return RS_NO_MEMORY;
+	travel->body = body;
+	for (int k = 0; k < count; k++) {
+		if (frame[k] < 0 || frame[k] >= travel->frames)
+			return RS_BAD_INDEX;
+		int inputs = slot_of(info, "dV") >= 0 ? 11 : 4;
+		body[travel->bodies++] = (rs_moved_body){frame[k], inputs, input_of(model, kernel, k, slot)};
+	}
+	return RS_OK;
+}
+
+int rs_travel_pairs(rs_travel *travel, rs_model *model, int kernel, int count, const int *instance, const int *frames,
+                    const double *offsets)
+{
+	const rs_kernel_info *info = rs_kernel_describe(kernel);
+	int slot = info ? slot_of(info, "D0") : -1;
+	if (slot < 0)
+		return RS_BAD_INDEX;
+	rs_moved_pair *pair = realloc(travel->pair, (size_t)(travel->pairs + count + 1) * sizeof *pair);
+	if (!pair)
+		return RS_NO_MEMORY;
+	travel->pair = pair;
+	for (int k = 0; k < count; k++) {
+		int first = frames[2 * k], second = frames[2 * k + 1];
+		if (first < 0 || second < 0 || first >= travel->frames || second >= travel->frames || instance[k] < 0
+		    || instance[k] >= model->groups[kernel].count)
+			return RS_BAD_INDEX;
+		rs_moved_pair *own = pair + travel->pairs++;
+		*own = (rs_moved_pair){.first = first, .second = second, .to = input_of(model, kernel, instance[k], slot)};
+		memcpy(own->offset1, offsets + 6 * k, sizeof own->offset1);
+		memcpy(own->offset2, offsets + 6 * k + 3, sizeof own->offset2);
+	}
+	return RS_OK;
+}
+
+int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame)
+{
+	for (int k = 0; k < count; k++)
+		if (frame[k] < 0 || frame[k] >= travel->frames)
+			return RS_BAD_INDEX;
+	travel->wheelset = malloc((size_t)(count + 1) * sizeof(int));
+	travel->w = calloc(3 * (size_t)count + 1, sizeof(double));
+	travel->rail = calloc(RS_TRACK_RAILS * (size_t)count + 1, sizeof(double));
+	if (!travel->wheelset || !travel->w || !travel->rail)
+		return RS_NO_MEMORY;
+	memcpy(travel->wheelset, frame, (size_t)count * sizeof(int));
+	travel->wheelsets = count;
+	return RS_OK;
+}
+
+static double travel(rs_travel *travel, double time)
+{
+	int piece = 0;
+	while (piece + 1 < travel->pieces && time >= travel->time[piece + 1])
+		piece++;
+	double t = time - travel->time[piece], dV = travel->acceleration[piece];
+	travel->dV = dV;
+	travel->V = travel->start_speed[piece] + dV * t;
+	return travel->place[piece] + t * (travel->start_speed[piece] + 0.5 * dV * t);
+}
+
+static void set_body(const rs_travel *travel, const rs_moved_body *body)
+{
+	const rs_track_frame *frame = travel->frame + body->frame;
+	int lanes = rs_kernel_lanes();
+	double V = travel->V, dV = travel->dV, *to = body->to;
+	to[0] = V;
+	for (int k = 0; k < 3; k++)
+		to[(1 + k) * lanes] = V * frame->turning[k];
+	if (body->inputs == 4)
+		return;
+	to[4 * lanes] = dV;
+	for (int k = 0; k < 3; k++) {
+		to[(5 + k) * lanes] = dV * frame->turning[k] + V * V * frame->turning_rate[k];
+		to[(8 + k) * lanes] = travel->gravity * frame->attitude[6 + k];
+	}
+}
+
+static void set_pair(const rs_travel *travel, const rs_moved_pair *pair)
+{
+	rs_track_pose pose;
+	int lanes = rs_kernel_lanes();
+	rs_track_pose_of(travel->frame + pair->first, travel->frame + pair->second, travel->V, pair->offset1, pair->offset2, &pose);
+	for (int k = 0; k < 3; k++) {
+		pair->to[k * lanes] = pose.D[k];
+		pair->to[(12 + k) * lanes] = pose.dD[k];
+		pair->to[(15 + k) * lanes] = pose.wf[k];
+	}
+	for (int k = 0; k < 9; k++)
+		pair->to[(3 + k) * lanes] = pose.C[k];
+}
+
+static int set_wheelset(rs_travel *travel, int k, double s)
+{
+	const rs_track_frame *frame = travel->frame + travel->wheelset[k];
+	for (int i = 0; i < 3; i++)
+		travel->w[3 * k + i] = travel->V * frame->turning[i];
+	return travel->track ? rs_track_rails_at(travel->track, s, travel->rail + RS_TRACK_RAILS * k) : RS_OK;
+}
+
+int rs_travel_set(rs_travel *travel, double time)
+{
+	double s = travel(travel, time);
+	int status = RS_OK;
+	for (int k = 0; travel->track && k < travel->frames && !status; k++)
+		status = rs_track_frame_at(travel->track, s + travel->x[k], travel->frame + k);
+	for (int k = 0; k < travel->wheelsets && !status; k++)
+		status = set_wheelset(travel, k, s + travel->x[travel->wheelset[k]]);
+	if (status)
+		return status;
+	for (int k = 0; k < travel->bodies; k++)
+		set_body(travel, travel->body + k);
+	for (int k = 0; travel->track && k < travel->pairs; k++)
+		set_pair(travel, travel->pair + k);
+	return RS_OK;
+}
