@@ -90,3 +90,79 @@ enum { RS_OUT_OF_TABLE = 6 };
 enum { RS_ZONES = 3, RS_PLACE_SIZE = 4 };
 
 typedef struct rs_contact_table rs_contact_table;
+
+enum { RS_BAD_SPEED = 8 };
+enum { RS_CONTACT_TABLE = 0, RS_CONTACT_CONES = 1 };
+enum {
+	RS_WHEEL_Y = 0,
+	RS_WHEEL_Q = 1,
+	RS_WHEEL_X = 2,
+	RS_WHEEL_TGAMMA = 3,
+	RS_WHEEL_ROLL_MOMENT = 4,
+	RS_WHEEL_PATCHES = 5,
+	RS_WHEEL_OUTPUTS = 6
+};
+enum {
+	RS_PATCH_LOAD = 0,
+	RS_PATCH_XI = 1,
+	RS_PATCH_FX = 4,
+	RS_PATCH_X = 7,
+	RS_PATCH_ACROSS = 8,
+	RS_PATCH_RADIUS = 9,
+	RS_PATCH_ANGLE = 10,
+	RS_PATCH_A = 11,
+	RS_PATCH_B = 12,
+	RS_PATCH_OUTPUTS = 13
+};
+
+typedef struct {
+	int kind;             /* of contact: RS_CONTACT_TABLE, RS_CONTACT_CONES */
+	const void *shape;    /* rs_contact_table or rs_contact_cones */
+	double r0;            /* m, height of the wheelset's centre over the top of rail where the contact's drop is 0 */
+	double sink;          /* m, added to the drop: how far the design position has sunk into the rail */
+	double friction;      /* - */
+	double weight;        /* -, factor on Kalker's coefficients */
+	double damping;       /* s/m, chi: load = elastic load (1 + chi penetration rate), not below zero */
+} rs_wheel;
+
+typedef struct {
+	int first;            /* coordinate x; y z yaw roll spin follow */
+	double offset[3];     /* m, design place of the centre in the track frame; the first is not used in the contact */
+	double spacing;       /* m, lateral distance of the rails' heads: their cross level turns both of them */
+	rs_wheel wheel[2];    /* left, right */
+} rs_wheelset;
+
+typedef struct {
+	int law;              /* RS_CREEP_... */
+	int strips, cells;    /* grid of FASTSIM, FaStrip */
+	double modulus;       /* N/m^2, shear */
+	double adhesion, slip; /* Polach's kA, kS */
+	int pieces;           /* of the coefficients' cubics over ln(a/b) */
+	double start, step;   /* ln(a/b) of the first node, and from node to node */
+	const double *c;      /* pieces x 4 x 4: C11, C22, C23, C33 = c0 + t (c1 + t (c2 + t c3)), t = ln(a/b) - node */
+} rs_creep_settings;
+
+typedef struct rs_wheel_rail rs_wheel_rail;
+
+rs_wheel_rail *rs_wheel_rail_create(int wheelsets, const rs_wheelset *wheelset, const rs_creep_settings *creep);
+void rs_wheel_rail_free(rs_wheel_rail *wr);
+int rs_wheel_rail_rows(rs_wheel_rail *wr, const double *q, const double *u, double V, const double *w,
+                       const double *rail, const double *seed, double *rows, double *blocks);
+void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, double *value);
+void rs_wheel_rail_outputs(const rs_wheel_rail *wr, double *wheel, double *patch);
+
+typedef struct {
+	double slope;         /* -, cone: radius falls by it towards the field */
+	double b0, r0;        /* m, place across and radius of a circle of the cone */
+	double rail_y, rail_z; /* m, centre of the round rail: from the track's centre line, below the top of rail */
+	double rail_radius;   /* m, > 0 */
+	double modulus;       /* N/m^2, contact modulus E': 1/E' = 2 (1 - nu^2)/E */
+	double ratio;         /* a/b of the ellipse, constant */
+	double stiffness;     /* N/m^(3/2): load = stiffness penetration^(3/2) */
+} rs_cone;
+
+typedef struct {
+	int cones;            /* 1 ... RS_ZONES, tread first */
+	double limit[3];      /* largest |y| m, |roll| rad, |drop| m it is asked for */
+	rs_cone cone[3];
+} rs_contact_cones;
