@@ -98,9 +98,8 @@ enum {
 	RS_WHEEL_Q = 1,
 	RS_WHEEL_X = 2,
 	RS_WHEEL_TGAMMA = 3,
-	RS_WHEEL_ROLL_MOMENT = 4,
-	RS_WHEEL_PATCHES = 5,
-	RS_WHEEL_OUTPUTS = 6
+	RS_WHEEL_PATCHES = 4,
+	RS_WHEEL_OUTPUTS = 5
 };
 enum {
 	RS_PATCH_LOAD = 0,
@@ -152,17 +151,17 @@ void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, d
 void rs_wheel_rail_outputs(const rs_wheel_rail *wr, double *wheel, double *patch);
 
 typedef struct {
-	double slope;         /* -, cone: radius falls by it towards the field */
-	double b0, r0;        /* m, place across and radius of a circle of the cone */
-	double rail_y, rail_z; /* m, centre of the round rail: from the track's centre line, below the top of rail */
-	double rail_radius;   /* m, > 0 */
-	double modulus;       /* N/m^2, contact modulus E': 1/E' = 2 (1 - nu^2)/E */
-	double ratio;         /* a/b of the ellipse, constant */
-	double stiffness;     /* N/m^(3/2): load = stiffness penetration^(3/2) */
+	double slope;          /* -, the radius falls by it towards the field */
+	double b0, radius;     /* m, a circle of the cone: from the wheelset's centre along the axle, and its radius */
+	double rail_y, rail_z; /* m, centre of the rail's circle: from the track's centre line, below the top of rail */
+	double rail_radius;    /* m, > 0 */
+	double a, b;           /* m^(1/2), semi-axes over the square root of the penetration */
+	double stiffness;      /* N/m^(3/2), load over penetration^(3/2) */
 } rs_cone;
 
 typedef struct {
-	int cones;            /* 1 ... RS_ZONES, tread first */
-	double limit[3];      /* largest |y| m, |roll| rad, |drop| m it is asked for */
+	int cones;             /* 1 ... RS_ZONES, tread first */
+	double r0;             /* m, height of the wheelset's centre over the top of rail at drop = 0 */
+	double limit[3];       /* largest |y| m, |roll| rad, |drop| m; yaw has none */
 	rs_cone cone[3];
 } rs_contact_cones;

@@ -18,7 +18,7 @@
  *             w        3 n, rad/s, angular velocity of each wheelset's track frame, in its axes
  *             rail     8 n, or NULL (rails as designed): left y m, z m, dy/ds -, dz/ds -, then right: deviation of
  *                      each rail's head from its design place at the wheelset, + right and + down, and its slopes
- *                      along the track, of modulus below 1
+ *                      along the track
  *             seed     cq, cu (read only with blocks)
  *   Returned  rows     6 n, set, not added to: what the wheels add to the residual r, that is minus the generalised
  *                      forces on x y z yaw roll spin of each wheelset
@@ -41,7 +41,6 @@
  *   Q N    vertical force of the wheel on the rail, + down
  *   X N    longitudinal force of the rail on the wheel, + forward
  *   TGAMMA N   |Fx xi| + |Fy eta| summed over the patches (energy per metre; without spin)
- *   ROLL_MOMENT N m   moment on the wheelset about its centre and the track's x
  *   PATCHES    number of patches that carry load
  * Of a patch (RS_PATCH_...): load N; xi, eta -, phi 1/m; Fx, Fy N, Mz N m on the wheel in the contact plane (x of
  *   the rolling direction, z into the rail); x, across, radius m, angle rad, a, b m as in contact_table.h.
