@@ -131,3 +131,8 @@ int rs_creep_forces(int law, int strips, int cells, int contacts, const double *
 	}
 	return RS_OK;
 }
+
+rs_creep_law *rs_creep_law_at(int law)
+{
+	return law < 0 || law >= (int)(sizeof LAWS / sizeof *LAWS) ? NULL : LAWS[law];
+}
