@@ -11,7 +11,7 @@
 #ifndef RS_MOTION_H
 #define RS_MOTION_H
 
-#include "../contact_table.h"
+#include "../contact/contact_table.h"
 #include "../creep.h"
 #include "../wheel_rail.h"
 
