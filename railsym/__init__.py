@@ -19,6 +19,7 @@ _MODULE_OF = {
     "Profile": "profiles",
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
+    "Track": "track",
     "Vehicle": "vehicle",
     "creep_forces": "creep",
     "creep_laws": "creep",
@@ -27,6 +28,7 @@ _MODULE_OF = {
     "linear_model": "linear",
     "linearise": "linear",
     "load_profile": "profiles",
+    "load_track": "track",
     "load_vehicle": "vehicle",
     "parameter_map": "stability_map",
     "profiles": "profiles",
@@ -35,7 +37,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("dampers", "plots")
+_SUBMODULES = ("dampers", "plots", "track")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 
