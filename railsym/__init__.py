@@ -19,7 +19,9 @@ _MODULE_OF = {
     "Profile": "profiles",
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
+    "Run": "results",
     "Vehicle": "vehicle",
+    "ChannelWriter": "results",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",
@@ -35,7 +37,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("dampers", "plots")
+_SUBMODULES = ("criteria", "dampers", "plots", "results")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 
