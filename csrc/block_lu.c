@@ -26,7 +26,7 @@ typedef struct { double row[RS_BLOCK]; } column8;
 #endif
 
 /* to = to - x times column */
-static RS_INLINE void subtract(column8 *to, double x, const column8 *column)
+static RS_ALWAYS_INLINE void subtract(column8 *to, double x, const column8 *column)
 {
 #if defined(__GNUC__)
 	*to -= x * *column;
@@ -37,7 +37,7 @@ static RS_INLINE void subtract(column8 *to, double x, const column8 *column)
 }
 
 /* C = C - A B; A has inner columns, B and C have columns. */
-static RS_INLINE void multiply(column8 *C, const column8 *A, const double *B, int inner, int columns)
+static RS_ALWAYS_INLINE void multiply(column8 *C, const column8 *A, const double *B, int inner, int columns)
 {
 	column8 sum[RS_BLOCK];
 	for (int j = 0; j < columns; j++)
@@ -50,7 +50,7 @@ static RS_INLINE void multiply(column8 *C, const column8 *A, const double *B, in
 }
 
 /* Six and eight coordinates, a body and a wheelset with axleboxes, as constants: loops unroll. */
-static RS_INLINE void subtract_product(double *C, const double *A, const double *B, int inner, int columns)
+static RS_ALWAYS_INLINE void subtract_product(double *C, const double *A, const double *B, int inner, int columns)
 {
 	if (inner == 6 && columns == 6)
 		multiply((column8 *)C, (const column8 *)A, B, 6, 6);
@@ -74,7 +74,7 @@ static void swap(double *a, double *b, int count, int stride)
 }
 
 /* Column, at or behind k, with the largest entry in row k. */
-static RS_INLINE int pivot_column(const double *A, int size, int k)
+static RS_ALWAYS_INLINE int pivot_column(const double *A, int size, int k)
 {
 	int best = k;
 	for (int j = k + 1; j < size; j++)
@@ -84,7 +84,7 @@ static RS_INLINE int pivot_column(const double *A, int size, int k)
 }
 
 /* A = A^-1. Returns 0 where a pivot vanishes against the row it stands in. */
-static RS_INLINE int invert(double *A, int size)
+static RS_ALWAYS_INLINE int invert(double *A, int size)
 {
 	double largest[RS_BLOCK] = {0.0};
 	int with[RS_BLOCK];
@@ -142,7 +142,7 @@ int rs_block_lu_factor(rs_block_lu *lu, int *worst)
 }
 
 /* y = y - A x */
-static RS_INLINE void subtract_columns(column8 *y, const double *A, const double *x, int size)
+static RS_ALWAYS_INLINE void subtract_columns(column8 *y, const double *A, const double *x, int size)
 {
 	column8 sum = *y;
 	for (int c = 0; c < size; c++)
@@ -150,7 +150,7 @@ static RS_INLINE void subtract_columns(column8 *y, const double *A, const double
 	*y = sum;
 }
 
-static RS_INLINE void subtract_vector(double *y, const double *A, const double *x, int size)
+static RS_ALWAYS_INLINE void subtract_vector(double *y, const double *A, const double *x, int size)
 {
 	if (size == 6)
 		subtract_columns((column8 *)y, A, x, 6);

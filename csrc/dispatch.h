@@ -14,9 +14,9 @@
 
 /* Into each clone of its caller. */
 #if defined(__GNUC__)
-#define RS_INLINE inline __attribute__((always_inline))
+#define RS_ALWAYS_INLINE inline __attribute__((always_inline))
 #else
-#define RS_INLINE inline
+#define RS_ALWAYS_INLINE inline
 #endif
 
 #endif

@@ -10,7 +10,7 @@
 
 enum { LANES = RS_LANES };
 
-static RS_INLINE double *lane(double *of, int k)
+static RS_ALWAYS_INLINE double *lane(double *of, int k)
 {
 	return of + k * LANES;
 }
@@ -46,7 +46,7 @@ static void eliminate_entries(const rs_kernel_info *info, double *restrict entri
 	}
 }
 
-static RS_INLINE void eliminate_rows(int last, double *restrict rows, double *restrict kept, int inner)
+static RS_ALWAYS_INLINE void eliminate_rows(int last, double *restrict rows, double *restrict kept, int inner)
 {
 	double *g = lane(kept, RS_KEPT_G);
 	memcpy(g, rows + last * LANES, (size_t)LANES * sizeof *g);
@@ -55,7 +55,7 @@ static RS_INLINE void eliminate_rows(int last, double *restrict rows, double *re
 			rows[c * LANES + i] -= kept[c * LANES + i] * g[i];
 }
 
-static RS_INLINE void add(double *to, const int *place, const double *values, int count)
+static RS_ALWAYS_INLINE void add(double *to, const int *place, const double *values, int count)
 {
 	for (int k = 0; k < count; k++)
 		to[place[k]] += values[k];

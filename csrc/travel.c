@@ -136,7 +136,7 @@ int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame)
 	return RS_OK;
 }
 
-static double travel(rs_travel *travel, double time)
+static double travelled(rs_travel *travel, double time)
 {
 	int piece = 0;
 	while (piece + 1 < travel->pieces && time >= travel->time[piece + 1])
@@ -188,7 +188,7 @@ static int set_wheelset(rs_travel *travel, int k, double s)
 
 int rs_travel_set(rs_travel *travel, double time)
 {
-	double s = travel(travel, time);
+	double s = travelled(travel, time);
 	int status = RS_OK;
 	for (int k = 0; travel->track && k < travel->frames && !status; k++)
 		status = rs_track_frame_at(travel->track, s + travel->x[k], travel->frame + k);

@@ -9,7 +9,7 @@
 
 enum { WIDTH = 8 };
 
-static RS_INLINE void series(const double *x, double *sine, double *cosine)
+static RS_ALWAYS_INLINE void series(const double *x, double *sine, double *cosine)
 {
 	for (int k = 0; k < WIDTH; k++) {
 		double y = x[k] * x[k];

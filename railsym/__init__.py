@@ -20,7 +20,9 @@ _MODULE_OF = {
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
     "Track": "track",
+    "Run": "results",
     "Vehicle": "vehicle",
+    "ChannelWriter": "results",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",
@@ -33,11 +35,12 @@ _MODULE_OF = {
     "parameter_map": "stability_map",
     "profiles": "profiles",
     "sensitivity": "sensitivity",
+    "simulate": "simulation",
     "stability_map": "stability_map",
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("dampers", "plots", "track")
+_SUBMODULES = ("criteria", "dampers", "plots", "results", "track")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 
