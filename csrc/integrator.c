@@ -44,10 +44,11 @@ void rs_integrator_free(rs_integrator *it)
 	if (!it)
 		return;
 	rs_system_free(it->system);
-	double *array[] = {it->q, it->u, it->a, it->v, it->before, it->d, it->sample_a, it->kink};
+	double *array[] = {it->q, it->u, it->a, it->v, it->before, it->d, it->sample_a, it->kink, it->wheel_rows};
 	for (size_t k = 0; k < sizeof array / sizeof *array; k++)
 		free(array[k]);
 	free(it->channel);
+	free(it->wheelset);
 	free(it);
 }
 
@@ -68,11 +69,6 @@ int rs_integrator_move(rs_integrator *it, double time)
 	return it->travel ? rs_travel_set(it->travel, time) : RS_OK;
 }
 
-int rs_integrator_evaluate(rs_integrator *it, const double *seed, int inner)
-{
-	rs_system_evaluate(it->system, seed, inner);
-	return RS_OK;
-}
 
 int rs_integrator_start(rs_integrator *it, double time, const double *q, const double *u)
 {
@@ -129,10 +125,15 @@ int rs_integrator_kinks(rs_integrator *it, int count, const double *time)
 
 static int check_channel(const rs_integrator *it, const rs_channel *channel)
 {
+	int number = channel->number;
 	if (channel->kind <= RS_CHANNEL_ACCELERATION)
-		return channel->kind >= 0 && channel->number >= 0 && channel->number < it->n;
-	const rs_kernel_info *info = channel->kind == RS_CHANNEL_ELEMENT ? rs_kernel_describe(channel->number) : NULL;
-	return info && channel->instance >= 0 && channel->instance < it->system->model->groups[channel->number].count
+		return channel->kind >= 0 && number >= 0 && number < it->n;
+	if (channel->kind == RS_CHANNEL_WHEEL)
+		return number >= 0 && number < 2 * it->wheelsets * RS_WHEEL_OUTPUTS;
+	if (channel->kind == RS_CHANNEL_PATCH)
+		return number >= 0 && number < 2 * it->wheelsets * RS_ZONES * RS_PATCH_OUTPUTS;
+	const rs_kernel_info *info = channel->kind == RS_CHANNEL_ELEMENT ? rs_kernel_describe(number) : NULL;
+	return info && channel->instance >= 0 && channel->instance < it->system->model->groups[number].count
 	       && channel->row >= 0 && channel->row < info->coordinates;
 }
 
@@ -159,7 +160,9 @@ int rs_integrator_channels(rs_integrator *it, int count, const rs_channel *chann
 	it->channels = count;
 	it->system->capture = capture;
 	it->system->captures = captures;
-	it->looks = captures > 0;
+	it->looks = 0;
+	for (int k = 0; k < count; k++)
+		it->looks |= kept[k].kind > RS_CHANNEL_ACCELERATION;
 	return RS_OK;
 }
 
@@ -194,13 +197,19 @@ int rs_integrator_sample(rs_integrator *it, double *row)
 		rs_integrator_place(it, it->q, it->u, it->sample_a);
 		it->system->capturing = 1;
 		if (!status)
-			status = rs_integrator_evaluate(it, NULL, 1);
+			status = rs_integrator_evaluate(it, NULL, 1, 0);
+		if (!status && it->wheels)
+			rs_wheel_rail_outputs(it->wheels, it->wheel_output, it->patch_output);
 	}
 	for (int k = 0; k < it->channels; k++) {
 		const rs_channel *channel = it->channel + k;
 		const double *from[] = {it->q, it->u, it->sample_a};
 		if (channel->kind <= RS_CHANNEL_ACCELERATION)
 			row[k] = from[channel->kind][channel->number];
+		else if (channel->kind == RS_CHANNEL_WHEEL)
+			row[k] = it->wheel_output[channel->number];
+		else if (channel->kind == RS_CHANNEL_PATCH)
+			row[k] = it->patch_output[channel->number];
 		else
 			row[k] = it->system->capture[captured++].value;
 	}
@@ -249,7 +258,7 @@ int rs_integrator_residual(rs_integrator *it, double time, const double *q, cons
 	int status = rs_integrator_move(it, time);
 	rs_integrator_place(it, q, u, a);
 	if (!status)
-		status = rs_integrator_evaluate(it, NULL, 0);
+		status = rs_integrator_evaluate(it, NULL, 0, 0);
 	if (status)
 		return status;
 	for (int k = 0; k < it->second; k++)
@@ -274,7 +283,7 @@ int rs_integrator_solve(rs_integrator *it, const double *q, const double *u, con
 	int worst = 0;
 	it->factored = 0.0;
 	rs_integrator_place(it, q, u, a);
-	int status = rs_integrator_evaluate(it, seed, 1);
+	int status = rs_integrator_evaluate(it, seed, 1, 0);
 	if (!status)
 		status = rs_block_lu_factor(it->system->lu, &worst);
 	if (status)

@@ -40,6 +40,9 @@
  * rs_integrator_residual r(q, u, a) with holds, forces, wheels and track at a time; n
  * rs_integrator_solve    S x = b with the pencil at a state, by blocks: to compare with other solvers; the
  *                        integrator must be started again before it runs
+ * rs_integrator_travel   how the track frames move; the caller keeps it alive. NULL: as the model's inputs say
+ * rs_integrator_wheels   wheel-rail forces that join the residual; needs a travel with these wheelsets
+ *   Given     first      wheelsets, first coordinate (x) of each
  * rs_integrator_fill     size of the factors: block operations of a factorisation, doubles
  */
 #ifndef RS_INTEGRATOR_H
@@ -48,10 +51,14 @@
 #include "travel.h"
 #include "railsym.h"
 #include "system.h"
+#include "wheel_rail.h"
 
 struct rs_integrator {
 	rs_system *system;
 	rs_travel *travel;         /* the caller's, or NULL: nothing moves that the model's inputs do not say */
+	rs_wheel_rail *wheels;     /* the caller's, or NULL */
+	int wheelsets, *wheelset;  /* first coordinate of each */
+	double *wheel_rows, *wheel_blocks, *wheel_output, *patch_output;
 	int n, second;
 	double step, am, af, gamma, tolerance;
 	double start;              /* s */
@@ -85,7 +92,8 @@ void rs_integrator_place(rs_integrator *integrator, const double *q, const doubl
 /* Track and speed at a time; RS_OK without motion. */
 int rs_integrator_move(rs_integrator *integrator, double time);
 
-/* The whole residual at the model's state, with seed the pencil; status of the wheels. */
-int rs_integrator_evaluate(rs_integrator *integrator, const double *seed, int inner);
+/* The whole residual at the model's state, with seed the pencil, or (wheels_only) the pencil as it was with new slopes
+ * of the wheels; status of the wheels. */
+int rs_integrator_evaluate(rs_integrator *integrator, const double *seed, int inner, int wheels_only);
 
 #endif

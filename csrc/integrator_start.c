@@ -60,7 +60,7 @@ static int start_internal(rs_integrator *it, int kernel)
 static int solve_accelerations(rs_integrator *it)
 {
 	static const double mass[3] = {0.0, 0.0, 1.0};
-	int worst = 0, status = rs_integrator_evaluate(it, mass, 0);
+	int worst = 0, status = rs_integrator_evaluate(it, mass, 0, 0);
 	it->factored = 0.0;
 	it->report.pencils++;
 	if (!status && rs_system_not_finite(it->system) >= 0) {

@@ -15,7 +15,10 @@
 
 /* Contraction above which new factors are cheaper than more iterations; iterations with one set of factors; sets a step. */
 static const double SLOW = 0.25;
-enum { ITERATIONS = 4, FACTORS = 4 };
+enum { ITERATIONS = 5, SETS = 8 };
+
+/* Factors of an iteration: those there are, with new slopes of the wheels, all new. */
+enum { KEPT = 0, WHEELS = 1, ALL = 2 };
 
 /* Positions on levers of 10 m are not known better. */
 static const double ROUNDING = 4e-15;
@@ -122,15 +125,14 @@ static int worst_of(const rs_integrator *it)
 	return worst;
 }
 
-/* Residual, and with fresh factors, at the present iterate. */
-static int look(rs_integrator *it, const scheme *with, int fresh)
+/* Residual, and new factors unless they are kept, at the present iterate. */
+static int look(rs_integrator *it, const scheme *with, int factors)
 {
-	int worst = 0, status = rs_integrator_evaluate(it, fresh ? with->seed : NULL, 1);
-	if (status || !fresh) {
-		it->report.residuals++;
+	int worst = 0, status = rs_integrator_evaluate(it, factors ? with->seed : NULL, 1, factors == WHEELS);
+	long long *count[] = {&it->report.residuals, &it->report.wheel_factors, &it->report.pencils};
+	++*count[factors];
+	if (status || factors == KEPT)
 		return status;
-	}
-	it->report.pencils++;
 	it->factored = 0.0;
 	if (rs_system_not_finite(it->system) >= 0) {
 		it->report.coordinate = rs_system_not_finite(it->system);
@@ -161,7 +163,7 @@ static int iterate(rs_integrator *it, const scheme *with)
 	double before = INFINITY, allowed = it->tolerance * with->tau * with->tau;
 	allowed = allowed > ROUNDING ? allowed : ROUNDING;
 	for (int k = 0; k < ITERATIONS; k++) {
-		int status = k ? look(it, with, 0) : RS_OK;
+		int status = k ? look(it, with, KEPT) : RS_OK;
 		if (status)
 			return status;
 		rs_system_solve(it->system, it->d);
@@ -195,15 +197,16 @@ static int advance(rs_integrator *it, double from, double h)
 	predict(it, h);
 	int status = rs_integrator_move(it, from + at * h);
 	/* a change of tau in the last digit, from the difference of two times, is no reason for new factors */
-	int fresh = fabs(it->factored - with.tau) > 1e-7 * with.tau;
-	for (int set = 0; set < FACTORS && !status; set++) {
-		status = look(it, &with, fresh);
+	int factors = fabs(it->factored - with.tau) > 1e-7 * with.tau ? ALL : KEPT;
+	for (int set = 0; set < SETS && !status; set++) {
+		status = look(it, &with, factors);
 		if (!status)
 			status = iterate(it, &with);
 		if (status != RS_NOT_CONVERGED)
 			break;
-		status = set + 1 < FACTORS ? RS_OK : fail(it, RS_NOT_CONVERGED);
-		fresh = 1;
+		status = set + 1 < SETS ? RS_OK : fail(it, RS_NOT_CONVERGED);
+		/* wheels first; where that does not help, everything */
+		factors = it->wheels && factors == KEPT ? WHEELS : ALL;
 	}
 	if (status) {
 		it->factored = 0.0;

@@ -165,6 +165,7 @@ typedef struct {
 	long long residuals;   /* evaluations of the residual alone */
 	long long pencils;     /* evaluations with the pencil, each factored */
 	long long solves;
+	long long wheel_factors;  /* factorisations with new slopes of the wheels alone */
 } rs_run_report;
 typedef int (*rs_controller)(void *context, double time, const double *q, const double *u, const double *a);
 
@@ -194,7 +195,6 @@ int rs_travel_bodies(rs_travel *travel, rs_model *model, int kernel, const int *
 int rs_travel_pairs(rs_travel *travel, rs_model *model, int kernel, int count, const int *instance, const int *frames,
                     const double *offsets);
 int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame);
-void rs_integrator_travel(rs_integrator *integrator, rs_travel *travel);
 enum { RS_BAD_SPEED = 8 };
 enum { RS_CONTACT_TABLE = 0, RS_CONTACT_CONES = 1 };
 enum {
@@ -306,3 +306,6 @@ void rs_contact_table_free(rs_contact_table *table);
 int rs_contact_lookup(const rs_contact_table *table, const double *place, rs_patch *patch, int *count, int *beyond);
 int rs_contact_lookup_many(const rs_contact_table *table, int n, const double *place, rs_patch *patch, int *count,
                            int *failed, int *beyond);
+
+void rs_integrator_travel(rs_integrator *integrator, rs_travel *travel);
+int rs_integrator_wheels(rs_integrator *integrator, rs_wheel_rail *wheels, int wheelsets, const int *first);

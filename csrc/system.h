@@ -46,6 +46,7 @@ typedef struct {
 	int *coordinate;      /* size, coordinate at a place, -1 for none */
 	rs_scatter *scatter;  /* one a kernel */
 	double *r;            /* size + 8, residual, then the solution */
+	double *base;         /* values of the pencil before it was factored, without the wheels */
 	double *force;        /* n, applied generalised forces, N and N m */
 	rs_hold *hold;
 	int holds;

@@ -163,7 +163,10 @@ static int build(rs_system *system, int blocks, const int *block)
 	if (!system->place || !system->coordinate || !system->force || !system->r)
 		return 0;
 	memset(system->r, 0, (size_t)(system->size + RS_BLOCK) * sizeof(double));
-	return order_blocks(system, blocks, block) && number_places(system, blocks, block) && make_scatters(system);
+	if (!order_blocks(system, blocks, block))
+		return 0;
+	system->base = malloc((size_t)system->lu->values_size * sizeof(double));
+	return system->base && number_places(system, blocks, block) && make_scatters(system);
 }
 
 rs_system *rs_system_create(rs_model *model, int second, int blocks, const int *block)
@@ -200,6 +203,7 @@ void rs_system_free(rs_system *system)
 	free(system->coordinate);
 	free(system->force);
 	free(system->r);
+	free(system->base);
 	free(system->hold);
 	free(system->capture);
 	free(system);

@@ -7,7 +7,7 @@ from railsym._core import _MEANING, _check, _doubles, _vector, ffi, lib
 from railsym.errors import ModelError
 
 CHANNELS = {"position": lib.RS_CHANNEL_POSITION, "rate": lib.RS_CHANNEL_RATE, "acceleration": lib.RS_CHANNEL_ACCELERATION,
-            "element": lib.RS_CHANNEL_ELEMENT}
+            "element": lib.RS_CHANNEL_ELEMENT, "wheel": lib.RS_CHANNEL_WHEEL, "patch": lib.RS_CHANNEL_PATCH}
 OK, NOT_CONVERGED, NOT_FINITE = lib.RS_OK, lib.RS_NOT_CONVERGED, lib.RS_NOT_FINITE
 SINGULAR, STOPPED, OUT_OF_TRACK = lib.RS_SINGULAR, lib.RS_STOPPED, lib.RS_OUT_OF_TRACK
 
@@ -96,6 +96,11 @@ class Integrator:
         """A `Travel` that moves the track frames, or None."""
         self._travel = travel
         lib.rs_integrator_travel(self._pointer, ffi.NULL if travel is None else travel._pointer)
+
+    def set_wheels(self, forces, first):
+        """Wheel-rail forces (`railsym.wheel_rail.WheelRail`) and the first coordinate of each wheelset; needs a travel."""
+        self._wheels = forces
+        _check(lib.rs_integrator_wheels(self._pointer, forces.pointer, len(first), _integers(first)), "wheels")
 
     def sample(self):
         """Channels at the present state, shape (channels,), and the status."""
