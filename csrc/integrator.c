@@ -66,7 +66,11 @@ void rs_integrator_place(rs_integrator *it, const double *q, const double *u, co
 
 int rs_integrator_move(rs_integrator *it, double time)
 {
-	return it->travel ? rs_travel_set(it->travel, time) : RS_OK;
+	if (!it->travel)
+		return RS_OK;
+	int status = rs_travel_set(it->travel, time);
+	it->system->travel_acceleration = it->travel->dV;
+	return status;
 }
 
 
@@ -81,7 +85,8 @@ int rs_integrator_start(rs_integrator *it, double time, const double *q, const d
 	return it->report.status = rs_integrator_begin(it, time);
 }
 
-int rs_integrator_hold(rs_integrator *it, int count, const int *coordinate, const double *stiffness, const double *damping)
+int rs_integrator_hold(rs_integrator *it, int count, const int *coordinate, const double *stiffness,
+                       const double *damping, const double *mass)
 {
 	rs_system *system = it->system;
 	rs_hold *hold = malloc((size_t)(count + 1) * sizeof *hold);
@@ -94,7 +99,7 @@ int rs_integrator_hold(rs_integrator *it, int count, const int *coordinate, cons
 		}
 		int place = system->place[coordinate[k]], row = place % RS_BLOCK;
 		int diagonal = system->lu->diagonal[place / RS_BLOCK] + RS_BLOCK * row + row;
-		hold[k] = (rs_hold){place, diagonal, coordinate[k], stiffness[k], damping[k]};
+		hold[k] = (rs_hold){place, diagonal, coordinate[k], stiffness[k], damping[k], mass[k]};
 	}
 	free(system->hold);
 	system->hold = hold;

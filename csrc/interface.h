@@ -174,7 +174,7 @@ rs_integrator *rs_integrator_create(rs_model *model, int second, int blocks, con
 void rs_integrator_free(rs_integrator *integrator);
 int rs_integrator_start(rs_integrator *integrator, double time, const double *q, const double *u);
 int rs_integrator_hold(rs_integrator *integrator, int count, const int *coordinate, const double *stiffness,
-                       const double *damping);
+                       const double *damping, const double *mass);
 double *rs_integrator_force(rs_integrator *integrator);
 int rs_integrator_kinks(rs_integrator *integrator, int count, const double *time);
 int rs_integrator_channels(rs_integrator *integrator, int count, const rs_channel *channel);

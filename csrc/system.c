@@ -105,7 +105,8 @@ static void add_own(rs_system *system, const double *seed)
 		system->r[system->place[k]] -= system->force[k];
 	for (int k = 0; k < system->holds; k++) {
 		const rs_hold *hold = system->hold + k;
-		system->r[hold->place] += hold->stiffness * q[hold->coordinate] + hold->damping * u[hold->coordinate];
+		system->r[hold->place] += hold->stiffness * q[hold->coordinate] + hold->damping * u[hold->coordinate]
+		                          - hold->mass * system->travel_acceleration;
 		if (seed)
 			system->lu->values[hold->diagonal] += seed[0] * hold->stiffness + seed[1] * hold->damping;
 	}

@@ -31,10 +31,10 @@ typedef struct {
 	double value;
 } rs_capture;
 
-/* A soft hold: stiffness and damping on one coordinate. */
+/* A soft hold of one coordinate: stiffness, damping, and the traction that accelerates a mass with the track frames. */
 typedef struct {
 	int place, diagonal, coordinate;
-	double stiffness, damping;
+	double stiffness, damping, mass;
 } rs_hold;
 
 typedef struct {
@@ -50,6 +50,7 @@ typedef struct {
 	double *force;        /* n, applied generalised forces, N and N m */
 	rs_hold *hold;
 	int holds;
+	double travel_acceleration;  /* m/s^2, of the track frames along the track */
 	rs_capture *capture;  /* in the order of kernels and instances */
 	int captures;
 	int capturing;        /* 1: the next evaluation fills them */

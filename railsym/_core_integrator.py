@@ -10,6 +10,7 @@ CHANNELS = {"position": lib.RS_CHANNEL_POSITION, "rate": lib.RS_CHANNEL_RATE, "a
             "element": lib.RS_CHANNEL_ELEMENT, "wheel": lib.RS_CHANNEL_WHEEL, "patch": lib.RS_CHANNEL_PATCH}
 OK, NOT_CONVERGED, NOT_FINITE = lib.RS_OK, lib.RS_NOT_CONVERGED, lib.RS_NOT_FINITE
 SINGULAR, STOPPED, OUT_OF_TRACK = lib.RS_SINGULAR, lib.RS_STOPPED, lib.RS_OUT_OF_TRACK
+OUT_OF_TABLE, BAD_SPEED = lib.RS_OUT_OF_TABLE, lib.RS_BAD_SPEED
 
 _MEANING.setdefault(SINGULAR, "a block of the matrix is singular")
 _MEANING.setdefault(STOPPED, "the controller stopped the run")
@@ -64,10 +65,10 @@ class Integrator:
         """Begin at a time (s) from q and u (n,); returns the status, see `report`."""
         return lib.rs_integrator_start(self._pointer, time, *(_doubles(_vector(v, self.size, w)) for v, w in ((q, "q"), (u, "u"))))
 
-    def hold(self, coordinates, stiffness, damping):
-        """Hold coordinates by springs (N/m) and dampers (N s/m) to where they are zero."""
+    def hold(self, coordinates, stiffness, damping, mass):
+        """Hold coordinates by springs (N/m) and dampers (N s/m) to where they are zero, and pull masses (kg) along as the frames speed up."""
         _check(lib.rs_integrator_hold(self._pointer, len(coordinates), _integers(coordinates), _floats(stiffness),
-                                      _floats(damping)), "holding coordinates")
+                                      _floats(damping), _floats(mass)), "holding coordinates")
 
     @property
     def force(self):

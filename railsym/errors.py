@@ -28,3 +28,7 @@ class ConvergenceError(RailsymError, RuntimeError):
 
 class CoreError(RailsymError, RuntimeError):
     """The C library refused a call; the message carries its status."""
+
+
+class SimulationError(RailsymError, ValueError):
+    """A simulation that cannot be started as asked."""

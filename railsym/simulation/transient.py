@@ -1,0 +1,303 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs in time: Python drives blocks of steps, C takes them.
+
+docs/simulation.md says what is computed and how far to trust it.
+"""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+
+import numpy as np
+
+from railsym import _core_integrator as core
+from railsym.errors import SimulationError
+from railsym.results import ChannelWriter, Run
+from railsym.results.metadata import Ending, RunInfo
+from railsym.simulation.assembled import Assembled
+from railsym.simulation.channels import Recorder, catalogue, chosen
+from railsym.simulation.failure import ending_of
+from railsym.simulation.speed import SpeedProfile
+
+RHO = 0.9          # of the generalised-alpha scheme: what is left in a step of a motion much faster than it
+TOLERANCE = 1e-4   # m/s^2: 1e-5 of gravity
+_BLOCK = 0.1       # s of motion between two looks at the keyboard and the progress bar
+
+
+class Controls:
+    """What a controller sees and may set.
+
+    Attributes
+    ----------
+    time : float
+        s
+    """
+
+    def __init__(self, simulation):
+        self._run, self._parts = simulation, simulation.parts
+        self._state = None
+        self._laws = {element.name: k for k, element in enumerate(self._parts.model.laws)}
+        self._lines = sum(element.axis is None for element in self._parts.model.laws)
+
+    @property
+    def time(self):
+        """s"""
+        return self._run.time
+
+    def _value(self, row, name):
+        if self._state is None or self._state[0] != self.time:
+            self._state = self.time, self._parts.integrator.state()
+        return float(self._state[1][row][self._parts.number(name, "controller")])
+
+    def position(self, name):
+        """A coordinate, such as ``"car.roll"``, m or rad."""
+        return self._value(0, name)
+
+    def rate(self, name):
+        """Its rate."""
+        return self._value(1, name)
+
+    def acceleration(self, name):
+        """Its second derivative in the track frame."""
+        return self._value(2, name)
+
+    def command(self, element, value):
+        """Set the command of an actuator, N or m, until it is set again.
+
+        Raises
+        ------
+        SimulationError
+            An element that does not exist or takes no command.
+        """
+        actuators = [e.name for e in self._parts.model.laws if e.type == "actuator"]
+        if element not in actuators:
+            raise SimulationError(f"command of {element!r}: actuators of this vehicle are {', '.join(actuators) or 'none'}")
+        if not np.isfinite(value):
+            raise SimulationError(f"command of {element!r} is {value}; a finite number (N or m) is needed")
+        k = self._laws[element]
+        table, number = ("line", k) if k < self._lines else ("axis", k - self._lines)
+        self._parts.model._law_tables[table].set_command(number, float(value))
+
+    def force(self, coordinate, value):
+        """Set the generalised force (N or N m) applied to a coordinate, until it is set again."""
+        self._parts.integrator.force[self._parts.number(coordinate, "controller")] = float(value)
+
+
+class Simulation:
+    """A vehicle in motion, stepped as far as wanted.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    speed : float, sequence of (time, speed), or SpeedProfile
+        m/s (and s).
+    track : railsym.Track, optional
+        Straight and level without it.
+    contact : LinearContact, contact table, ConicalContact or WheelRail, optional
+        ``LinearContact()`` by default; None: no wheel touches a rail.
+    dt : float
+        s
+    start : float
+        m, arc length of the vehicle's centre at t = 0.
+    initial : dict of str to float, or (q, u), optional
+        ``{"wheelset1.y": 3e-3, "car.y.rate": 0.1}``, SI; the rest of the vehicle rolls at its design position.
+    channels : str or sequence of str, optional
+        Names and patterns, ``"all"`` for everything; see `available`.
+    rate : float, optional
+        Samples in a second, Hz; as close as a whole number of steps comes. 200 Hz without it.
+    markers : dict of str to (str, array (3,)), optional
+        Further points whose accelerations can be recorded: body, position in vehicle coordinates (m).
+    rho, tolerance : float
+        Spectral radius at infinite frequency; m/s^2 that an iteration may leave wrong.
+    drive : str
+        ``"held"``: the heaviest body is held softly (0.1 Hz, critically damped on the mass of the vehicle) to its place along
+        the track, which supplies traction and stands for the drive that keeps the speed. ``"free"``: the vehicle rolls.
+    forces : dict
+        Arguments of `railsym.wheel_rail.WheelRail`: law, grid, friction, ...
+
+    Attributes
+    ----------
+    parts : Assembled
+    recorder : Recorder
+    ending : Ending
+    """
+
+    def __init__(self, vehicle, *, speed, track=None, contact="linear", dt=1e-3, start=0.0, initial=None, channels=None, rate=None,
+                 markers=None, rho=RHO, tolerance=TOLERANCE, drive="held", **forces):
+        from railsym.contact import LinearContact
+
+        _check_numbers(dt=dt, rho=rho, tolerance=tolerance)
+        profile = SpeedProfile.of(speed, start)
+        contact = LinearContact() if isinstance(contact, str) and contact == "linear" else contact
+        self.parts = Assembled(vehicle, contact, track, profile, dt, rho, tolerance, drive, forces)
+        self.available = catalogue(self.parts, markers or {})
+        self.recorder = Recorder(chosen(self.available, channels))
+        self.every = _steps_between(dt, rate)
+        self.dt, self.ending = float(dt), Ending("running")
+        integrator = self.parts.integrator
+        integrator.set_channels(self.recorder.raw)
+        status = integrator.start(0.0, *self.parts.start(initial))
+        row, sampled = integrator.sample()
+        if status or sampled:
+            self.ending = ending_of(self.parts, status or sampled)
+            raise SimulationError(f"the run cannot begin: {self.ending}")
+        self._times, self._values = [np.zeros(1)], [self.recorder.values(np.zeros(1), row[None])]
+
+    @property
+    def time(self):
+        """s, of the present state."""
+        return self.parts.integrator.report.time
+
+    def steps(self, count):
+        """Take ``count`` steps in C; returns times and values of the samples on the way, or fewer with `ending` set."""
+        integrator = self.parts.integrator
+        done = integrator.report.steps
+        rows = (done + count) // self.every - done // self.every
+        samples = np.empty((rows, len(self.recorder.raw)))
+        status, sampled = integrator.run(count, self.every, samples)
+        times = (done // self.every + 1 + np.arange(sampled)) * self.every * self.dt
+        values = self.recorder.values(times, samples[:sampled])
+        self._times.append(times)
+        self._values.append(values)
+        if status:
+            self.ending = ending_of(self.parts, status)
+        return times, values
+
+    def run(self, duration, *, controllers=(), progress=False, writer=None):
+        """Go on for ``duration`` (s); Ctrl-C ends the run with what there is.
+
+        Parameters
+        ----------
+        duration : float
+        controllers : sequence of (callable, float)
+            Each is called with a `Controls` before the step at its rate (Hz).
+        progress : bool
+            A bar on the error stream.
+        writer : ChannelWriter, optional
+            Gets the samples as they come.
+        """
+        total = self._check_duration(duration)
+        first = self.parts.integrator.report.steps
+        calls = [(function, _period(rate, self.dt)) for function, rate in controllers]
+        block = max(1, round(_BLOCK / self.dt))
+        controls = Controls(self)
+        self.ending = Ending("running")
+        try:
+            with _bar(total * self.dt, progress) as bar:
+                while self.ending.reason == "running" and (left := first + total - self.parts.integrator.report.steps) > 0:
+                    done = self.parts.integrator.report.steps
+                    for function, period in calls:
+                        if done % period == 0:
+                            function(controls)
+                    count = min(left, block, *(period - done % period for _, period in calls))
+                    times, values = self.steps(count)
+                    if writer is not None and len(times):
+                        writer.write(times, values)
+                    bar.update(round(count * self.dt, 9))
+        except KeyboardInterrupt:
+            self.ending = Ending("interrupted", time=self.time, distance=float(self.parts.speed.place(self.time)))
+        if self.ending.reason == "running":
+            self.ending = Ending("completed", time=self.time, distance=float(self.parts.speed.place(self.time)))
+
+    def _check_duration(self, duration):
+        if not 0.0 < duration < np.inf:
+            raise SimulationError(f"duration {duration} s: a finite time above 0 s is needed")
+        total = round(duration / self.dt)
+        if total < 1:
+            raise SimulationError(f"duration {duration} s is shorter than half a step of {self.dt} s")
+        end = self.time + total * self.dt
+        self.parts.check_track(end)
+        self.parts.integrator.set_kinks(self.parts.kinks(end + self.dt))
+        return total
+
+    @property
+    def info(self):
+        """`RunInfo` of what was run so far."""
+        parts, report = self.parts, self.parts.integrator.report
+        counts = {name: int(getattr(report, name)) for name in ("steps", "residuals", "pencils", "wheel_factors", "solves")}
+        law = getattr(parts.wheels, "_law", "linear")
+        return RunInfo(vehicle=parts.vehicle.name, configuration=parts.vehicle.configuration or "", track=getattr(parts.track, "name", "straight"),
+                       speed=float(parts.speed.at(0.0)), time_step=self.dt, creep_law=law, ending=self.ending,
+                       message=str(self.ending), extra={"counts": counts})
+
+    def result(self):
+        """The `Run` so far."""
+        return Run(np.concatenate(self._times), np.concatenate(self._values), self.recorder.channels, self.info)
+
+
+def simulate(vehicle, *, speed, duration, controllers=(), progress=False, save=None, **options):
+    """Simulate a vehicle in motion.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    speed, options
+        As `Simulation`.
+    duration : float
+        s
+    controllers : sequence of (callable, float)
+        Each is called with a `Controls` at its rate (Hz) and may set commands of actuators and applied forces.
+    progress : bool
+    save : str or Path, optional
+        netCDF file that the samples are written to as they come, so that nothing is lost when the program ends.
+
+    Returns
+    -------
+    railsym.Run
+        Also when the run stopped early: ``run.status`` and ``run.message`` say why, where and what to do.
+
+    Raises
+    ------
+    SimulationError
+        What cannot be started as asked.
+    """
+    simulation = Simulation(vehicle, speed=speed, **options)
+    channels = simulation.recorder.channels
+    with ChannelWriter(save, channels, simulation.info) if save is not None else nullcontext() as writer:
+        if writer is not None:
+            writer.write(simulation._times[0], simulation._values[0])
+        simulation.run(duration, controllers=controllers, progress=progress, writer=writer)
+        if writer is not None:
+            writer.finish(simulation.ending, str(simulation.ending))
+    return simulation.result()
+
+
+def _check_numbers(dt, rho, tolerance):
+    for name, value, good, words in (("dt", dt, 0.0 < dt < np.inf, "above 0 s"), ("rho", rho, 0.0 <= rho <= 1.0, "from 0 to 1"),
+                                     ("tolerance", tolerance, 0.0 < tolerance < np.inf, "above 0 m/s^2")):
+        if not good:
+            raise SimulationError(f"{name} = {value!r}: a number {words} is needed")
+
+
+def _steps_between(dt, rate):
+    if rate is None:
+        return max(1, round(1.0 / (200.0 * dt)))
+    if not 0.0 < rate <= 1.0000001 / dt:
+        raise SimulationError(f"rate {rate!r} Hz: samples are taken at the ends of steps, so between 0 and {1.0 / dt:g} Hz for dt = {dt:g} s")
+    return max(1, round(1.0 / (rate * dt)))
+
+
+def _period(rate, dt):
+    if not 0.0 < rate <= 1.0000001 / dt:
+        raise SimulationError(f"controller rate {rate!r} Hz: between 0 and {1.0 / dt:g} Hz for dt = {dt:g} s")
+    return max(1, round(1.0 / (rate * dt)))
+
+
+class _NoBar:
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        return False
+
+    def update(self, _):
+        """Nothing is shown."""
+
+
+def _bar(total, show):
+    if not show:
+        return _NoBar()
+    from tqdm import tqdm
+
+    form = "{desc}: {percentage:3.0f}%|{bar}| {n:.1f}/{total:.1f} s [{elapsed}<{remaining}]"
+    return tqdm(total=total, desc="simulated", bar_format=form)
