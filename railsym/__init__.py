@@ -21,6 +21,7 @@ _MODULE_OF = {
     "RailsymError": "errors",
     "Track": "track",
     "Run": "results",
+    "Simulation": "simulation",
     "Vehicle": "vehicle",
     "ChannelWriter": "results",
     "creep_forces": "creep",
@@ -40,7 +41,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("criteria", "dampers", "plots", "results", "track")
+_SUBMODULES = ("criteria", "dampers", "plots", "results", "simulation", "track")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 
