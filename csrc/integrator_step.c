@@ -15,6 +15,10 @@
 
 /* Contraction above which new factors are cheaper than more iterations; iterations with one set of factors; sets a step. */
 static const double SLOW = 0.25;
+
+/* A step of one iteration sees no contraction: factors serve less well from step to step, and rounding may look like quick
+ * convergence. So what was seen last is taken to grow, until a second iteration looks again. */
+static const double AGEING = 1.5, LEAST = 1e-4;
 enum { ITERATIONS = 5, SETS = 8 };
 
 /* Factors of an iteration: those there are, with new slopes of the wheels, all new. */
@@ -172,11 +176,8 @@ static int iterate(rs_integrator *it, const scheme *with)
 		if (!isfinite(size))
 			return fail(it, RS_NOT_FINITE);
 		change(it, with);
-		if (k) {
-			double seen = size / before, kept = 0.3 * it->contraction;
-			it->contraction = it->contraction < 1.0 && kept > seen ? kept : seen;
-		}
-		double c = it->contraction;
+		it->contraction = k ? size / before : AGEING * it->contraction;
+		double c = it->contraction = it->contraction > LEAST ? it->contraction : LEAST;
 		if (size <= allowed || (c < 1.0 && size * c <= allowed * (1.0 - c)))
 			return RS_OK;
 		if (k && c > SLOW)
