@@ -8,7 +8,7 @@
 
 static int allocate(rs_integrator *it)
 {
-	double **array[] = {&it->q, &it->u, &it->a, &it->v, &it->before, &it->d, &it->sample_a};
+	double **array[] = {&it->q, &it->u, &it->a, &it->v, &it->before, &it->d, &it->sample_u, &it->sample_a};
 	for (size_t k = 0; k < sizeof array / sizeof *array; k++)
 		if (!(*array[k] = calloc((size_t)it->n, sizeof(double))))
 			return 0;
@@ -44,7 +44,7 @@ void rs_integrator_free(rs_integrator *it)
 	if (!it)
 		return;
 	rs_system_free(it->system);
-	double *array[] = {it->q, it->u, it->a, it->v, it->before, it->d, it->sample_a, it->kink, it->wheel_rows};
+	double *array[] = {it->q, it->u, it->a, it->v, it->before, it->d, it->sample_u, it->sample_a, it->kink, it->wheel_rows};
 	for (size_t k = 0; k < sizeof array / sizeof *array; k++)
 		free(array[k]);
 	free(it->channel);
@@ -184,22 +184,26 @@ void rs_integrator_travel(rs_integrator *it, rs_travel *travel)
 	it->factored = 0.0;
 }
 
-/* The scheme's accelerations belong (am - af) h before the end of the step. */
-static void accelerations(const rs_integrator *it, double *a)
+/* The scheme's accelerations, and rates of internal states, belong (am - af) h before the end of the step. */
+static void at_end(const rs_integrator *it, double *u, double *a)
 {
+	double ahead = it->am - it->af;
+	memcpy(u, it->u, (size_t)it->second * sizeof *u);
 	for (int k = 0; k < it->second; k++)
-		a[k] = it->a[k] + (it->am - it->af) * (it->a[k] - it->before[k]);
-	for (int k = it->second; k < it->n; k++)
+		a[k] = it->a[k] + ahead * (it->a[k] - it->before[k]);
+	for (int k = it->second; k < it->n; k++) {
+		u[k] = it->u[k] + ahead * (it->u[k] - it->before[k]);
 		a[k] = 0.0;
+	}
 }
 
 int rs_integrator_sample(rs_integrator *it, double *row)
 {
 	int status = RS_OK, captured = 0;
-	accelerations(it, it->sample_a);
+	at_end(it, it->sample_u, it->sample_a);
 	if (it->looks) {
 		status = rs_integrator_move(it, it->report.time);
-		rs_integrator_place(it, it->q, it->u, it->sample_a);
+		rs_integrator_place(it, it->q, it->sample_u, it->sample_a);
 		it->system->capturing = 1;
 		if (!status)
 			status = rs_integrator_evaluate(it, NULL, 1, 0);
@@ -208,7 +212,7 @@ int rs_integrator_sample(rs_integrator *it, double *row)
 	}
 	for (int k = 0; k < it->channels; k++) {
 		const rs_channel *channel = it->channel + k;
-		const double *from[] = {it->q, it->u, it->sample_a};
+		const double *from[] = {it->q, it->sample_u, it->sample_a};
 		if (channel->kind <= RS_CHANNEL_ACCELERATION)
 			row[k] = from[channel->kind][channel->number];
 		else if (channel->kind == RS_CHANNEL_WHEEL)
@@ -225,8 +229,8 @@ static int controlled(rs_integrator *it)
 {
 	if (!it->controller || it->report.steps % it->every)
 		return RS_OK;
-	accelerations(it, it->sample_a);
-	return it->controller(it->context, it->report.time, it->q, it->u, it->sample_a) ? RS_STOPPED : RS_OK;
+	at_end(it, it->sample_u, it->sample_a);
+	return it->controller(it->context, it->report.time, it->q, it->sample_u, it->sample_a) ? RS_STOPPED : RS_OK;
 }
 
 int rs_integrator_run(rs_integrator *it, int steps, int every, double *samples, int *sampled)
@@ -249,8 +253,7 @@ int rs_integrator_run(rs_integrator *it, int steps, int every, double *samples, 
 void rs_integrator_state(const rs_integrator *it, double *q, double *u, double *a)
 {
 	memcpy(q, it->q, (size_t)it->n * sizeof *q);
-	memcpy(u, it->u, (size_t)it->n * sizeof *u);
-	accelerations(it, a);
+	at_end(it, u, a);
 }
 
 const rs_run_report *rs_integrator_report(const rs_integrator *it)

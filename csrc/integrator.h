@@ -74,7 +74,7 @@ struct rs_integrator {
 	int kinks, next_kink;
 	rs_channel *channel;
 	int channels, looks;       /* looks: 1 where a sample needs the residual */
-	double *sample_a;          /* n */
+	double *sample_u, *sample_a;  /* n */
 	rs_controller controller;
 	void *context;
 	int every;                 /* steps between calls of the controller */

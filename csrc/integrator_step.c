@@ -24,9 +24,6 @@ enum { ITERATIONS = 5, SETS = 8 };
 /* Factors of an iteration: those there are, with new slopes of the wheels, all new. */
 enum { KEPT = 0, WHEELS = 1, ALL = 2 };
 
-/* Positions on levers of 10 m are not known better. */
-static const double ROUNDING = 4e-15;
-
 typedef struct {
 	double h, tau;
 	double seed[3];
@@ -165,7 +162,6 @@ static int fail(rs_integrator *it, int status)
 static int iterate(rs_integrator *it, const scheme *with)
 {
 	double before = INFINITY, allowed = it->tolerance * with->tau * with->tau;
-	allowed = allowed > ROUNDING ? allowed : ROUNDING;
 	for (int k = 0; k < ITERATIONS; k++) {
 		int status = k ? look(it, with, KEPT) : RS_OK;
 		if (status)
