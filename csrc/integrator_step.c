@@ -150,11 +150,11 @@ static int look(rs_integrator *it, const scheme *with, int factors)
 
 static int fail(rs_integrator *it, int status)
 {
-	int wrong = rs_system_not_finite(it->system);
 	it->report.coordinate = worst_of(it);
-	if (status == RS_NOT_FINITE && wrong >= 0)
-		it->report.coordinate = wrong;
 	it->factored = 0.0;
+	/* the solution has spread what is not finite over all equations: look at the residual again */
+	if (status == RS_NOT_FINITE && rs_integrator_evaluate(it, NULL, 1, 0) == RS_OK && rs_system_not_finite(it->system) >= 0)
+		it->report.coordinate = rs_system_not_finite(it->system);
 	return status;
 }
 

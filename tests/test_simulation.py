@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""rs.simulate: runs in pieces, channels, speed profiles, controllers, and how a run ends."""
+
+import numpy as np
+import pytest
+
+import railsym as rs
+from railsym.errors import SimulationError, TrackError
+from railsym.simulation import Simulation, SpeedProfile
+from railsym.wheel_rail import ConicalContact, Cone
+
+BOGIE = rs.load_vehicle("bogie").configured("with_anti_yaw_dampers")
+CONES = ConicalContact(zones=(Cone(0.1),))
+MOVED = {"frame.y": 2e-3, "frame.roll.rate": 0.01}
+
+
+def bogie(**options):
+    return Simulation(BOGIE, **{"speed": 40.0, "initial": MOVED, "channels": "all", "rate": 1000.0} | options)
+
+
+@pytest.mark.parametrize("contact", ["linear", CONES])
+def test_one_piece_and_ten_pieces_are_the_same_bytes(contact):
+    whole, pieces = bogie(contact=contact), bogie(contact=contact)
+    whole.run(0.2)
+    for _ in range(10):
+        pieces.run(0.02)
+    first, second = whole.result(), pieces.result()
+    assert len(first) == 201 and first.status == second.status == "completed"
+    for name in ("time", *first.channels):
+        assert first[name].tobytes() == second[name].tobytes(), name
+    again = bogie(contact=contact)
+    again.run(0.2)
+    assert again.parts.integrator.state().tobytes() == whole.parts.integrator.state().tobytes()
+
+
+def test_accelerations_are_second_derivatives_of_where_the_points_are():
+    """A point of the frame, by differences of its place at the ends of steps; and falling freely it reads -g."""
+    run = rs.simulate(BOGIE, speed=40.0, duration=0.3, dt=2.5e-4, rate=4000.0, initial=MOVED, channels="all",
+                      markers={"probe": ("frame", BOGIE.body("frame").position + [0.7, -0.4, 0.2])})
+    angles = np.array([run[f"frame.{name}"] for name in ("yaw", "roll", "pitch")])
+    from railsym.simulation.markers import rotations
+
+    turn = rotations(angles)
+    place = np.array([run[f"frame.{name}"] for name in "xyz"]).T + turn @ [0.7, -0.4, 0.2]
+    second = (place[2:] - 2.0 * place[1:-1] + place[:-2]) * 4000.0 ** 2
+    reads = np.einsum("nji,nj->ni", turn[1:-1], second - [0.0, 0.0, BOGIE.gravity]) + [0.0, 0.0, BOGIE.gravity]
+    found = np.array([run[f"probe.a{axis}"] for axis in "xyz"]).T[1:-1]
+    size = np.abs(found[20:]).max()
+    np.testing.assert_allclose(found[20:], reads[20:], atol=0.02 * size)  # differences over 0.25 ms of motions at 200 Hz
+
+
+def test_element_forces_are_those_of_the_laws():
+    """A bushing's force is -k e, a Maxwell damper's k_s (e - s): by hand from the coordinates."""
+    run = rs.simulate(BOGIE, speed=40.0, duration=0.05, initial=MOVED, channels="all")
+    maxwell = next(e for e in BOGIE.elements if e.type == "maxwell")
+    e0 = maxwell.second.position - maxwell.first.position
+    bodies = {end.body: BOGIE.body(end.body) for end in (maxwell.first, maxwell.second)}
+    from railsym.simulation.markers import rotations
+
+    ends = []
+    for end in (maxwell.first, maxwell.second):
+        q = np.array([run[f"{end.body}.{name}"] for name in ("x", "y", "z", "yaw", "roll", "pitch")])
+        ends.append(bodies[end.body].position + q[:3].T + rotations(q[3:]) @ (end.position - bodies[end.body].position))
+    stretch = np.linalg.norm(ends[1] - ends[0], axis=1) - np.linalg.norm(e0)
+    force = maxwell.parameters["series_stiffness"] * (stretch - run[f"{maxwell.name}.s"])
+    scale = np.abs(force).max()
+    assert scale > 100.0
+    np.testing.assert_allclose(run[f"{maxwell.name}.force"], force, atol=1e-6 * scale)
+
+
+def test_wheel_forces_carry_the_vehicle():
+    vehicle = rs.load_vehicle("pendolino")
+    run = rs.simulate(vehicle, speed=50.0, duration=0.2, contact=CONES, channels=["*.Q", "*.sum_Y", "*.zone0.load", "wheelset?.y"])
+    weight = vehicle.gravity * sum(b.mass + sum(box.mass for box in b.axleboxes) for b in vehicle.bodies)
+    total = np.sum([run[name] for name in run.channels.match("*.Q")], axis=0)
+    np.testing.assert_allclose(total[:2], weight, rtol=0.01)   # the design position is that of wheels that do not roll
+    np.testing.assert_allclose(total[20:], weight, rtol=1e-3)
+    assert np.abs(run["wheelset1.y"]).max() < 1e-9
+    assert run.info.creep_law == "fastsim" and run.info.extra["counts"]["steps"] == 200
+
+
+def test_speed_profile():
+    profile = SpeedProfile([1.0, 3.0, 5.0], [20.0, 30.0, 30.0], start=7.0)
+    t = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 9.0])
+    np.testing.assert_allclose(profile.place(t), [7.0, 27.0, 49.5, 77.0, 107.0, 257.0], rtol=1e-14)
+    np.testing.assert_allclose(profile.when(profile.place(t)), t, atol=1e-13)
+    np.testing.assert_allclose(profile.at(t), [20.0, 20.0, 25.0, 30.0, 30.0, 30.0])
+    for wrong in (0.0, -3.0, np.nan, [(0.0, 10.0), (0.0, 20.0)], [(0.0, 10.0), (1.0, 0.0)], [1.0, 2.0]):
+        with pytest.raises(SimulationError, match="speed"):
+            SpeedProfile.of(wrong)
+
+
+def test_held_vehicle_follows_an_acceleration():
+    """0.5 m/s^2 for 4 s: the vehicle stays within centimetres of its frames and its wheels turn as fast as it rolls."""
+    simulation = bogie(speed=[(0.0, 20.0), (0.5, 20.0), (4.5, 22.0)], initial=None, rate=10.0)
+    simulation.run(5.0)
+    run = simulation.result()
+    assert run.status == "completed" and run["V"][-1] == 22.0
+    assert max(np.abs(run[f"{b.name}.x"]).max() for b in BOGIE.bodies) < 0.02
+    wheelset = BOGIE.body("wheelset1")
+    assert run["wheelset1.spin.rate"][-1] == pytest.approx(-22.0 / wheelset.wheel_radius, rel=1e-4)
+    assert run["car.ax"][20] == pytest.approx(0.5, abs=0.05)
+
+
+def test_free_vehicle_coasts_as_held_one_on_straight_track():
+    free, held = (bogie(drive=drive, initial={"frame.y": 2e-3}) for drive in ("free", "held"))
+    for simulation in (free, held):
+        simulation.run(0.3)
+    np.testing.assert_allclose(free.result()["frame.y"], held.result()["frame.y"], atol=1e-6 * 2e-3)
+    with pytest.raises(SimulationError, match="drive 'towed'"):
+        bogie(drive="towed")
+
+
+def test_controller_sets_forces_at_its_rate():
+    seen = []
+
+    def push(controls):
+        seen.append(controls.time)
+        controls.force("car.y", 1000.0 if controls.time < 0.05 else 0.0)
+        assert controls.position("car.y") == controls._state[1][0][controls._parts.names.index("car.y")]
+
+    simulation = bogie(initial=None)
+    simulation.run(0.1, controllers=[(push, 100.0)])
+    np.testing.assert_allclose(seen, np.arange(10) * 0.01, atol=1e-12)
+    assert abs(simulation.result()["car.y"]).max() > 1e-6
+    with pytest.raises(SimulationError, match="car.wobble"):
+        bogie().run(0.01, controllers=[(lambda c: c.force("car.wobble", 1.0), 100.0)])
+    with pytest.raises(SimulationError, match="actuators of this vehicle are none"):
+        bogie().run(0.01, controllers=[(lambda c: c.command("primary.x", 1.0), 100.0)])
+
+
+def test_not_finite_is_named():
+    simulation = bogie()
+    simulation.run(0.02)
+    simulation.parts.integrator.force[simulation.parts.names.index("frame.yaw")] = np.nan
+    simulation.run(0.02)
+    run = simulation.result()
+    assert run.status == "not_converged" and "frame.yaw" in run.message and "not finite" in run.message
+    assert run.time[-1] == pytest.approx(0.02) and np.isfinite(run["frame.y"]).all()
+
+
+def test_step_too_large_stops_with_what_there_is():
+    """A wheelset thrown from a height of a degree of roll at a step of 50 ms."""
+    run = rs.simulate(BOGIE, speed=40.0, duration=2.0, dt=0.05, contact=CONES, rate=20.0,
+                      initial={"wheelset1.roll": 0.02, "wheelset1.z.rate": -2.0, "wheelset2.roll.rate": 5.0})
+    assert run.status in ("not_converged", "derailed") and 0.0 <= run.time[-1] < 2.0
+    assert "wheelset" in run.message
+
+
+def test_derailment_names_the_wheel():
+    run = rs.simulate(BOGIE, speed=20.0, duration=3.0, contact=CONES, initial={"wheelset2.y.rate": 8.0})
+    assert run.status == "derailed" and run.info.ending.wheel in ("wheelset2.left", "wheelset2.right")
+    assert "outside the contact table" in run.message and run.info.ending.time == pytest.approx(run.info.ending.distance / 20.0)
+
+
+def test_interruption_keeps_the_run():
+    def interrupt(controls):
+        if controls.time > 0.045:
+            raise KeyboardInterrupt
+
+    run = rs.simulate(BOGIE, speed=40.0, duration=5.0, rate=1000.0, controllers=[(interrupt, 100.0)])
+    assert run.status == "interrupted" and len(run) == 51
+
+
+def test_run_is_saved_as_it_goes(tmp_path):
+    pytest.importorskip("netCDF4")
+    run = rs.simulate(BOGIE, speed=40.0, duration=0.3, initial=MOVED, save=tmp_path / "run.nc")
+    read = rs.Run.from_netcdf(tmp_path / "run.nc")
+    assert read.status == "completed"
+    for name in run.channels:
+        assert read[name].tobytes() == run[name].tobytes()
+
+
+@pytest.mark.parametrize(("options", "message"), [
+    ({"dt": 0.0}, "dt = 0.0"), ({"rho": 1.5}, "from 0 to 1"), ({"tolerance": -1.0}, "tolerance"), ({"rate": 5000.0}, "rate 5000.0 Hz"),
+    ({"channels": "bogey.y"}, "no channel"), ({"initial": {"frame.why": 1.0}}, "frame.why"), ({"law": "polach"}, "law: these belong to"),
+    ({"initial": (np.zeros(3), np.zeros(3))}, "shapes"), ({"markers": {"m": ("frame", [0.0, np.nan, 0.0])}}, "marker 'm'"),
+])
+def test_bad_input_says_what_and_why(options, message):
+    with pytest.raises(SimulationError, match=message):
+        bogie(**options)
+
+
+def test_bad_runs_say_what_and_why():
+    for duration in (0.0, -1.0, np.inf, 1e-5):
+        with pytest.raises(SimulationError, match="duration"):
+            bogie().run(duration)
+    with pytest.raises(TrackError, match="beyond its end"):
+        bogie(track=rs.Track.straight(100.0), contact=CONES).run(5.0)
+    with pytest.raises(SimulationError, match="irregularities, which the linear contact does not see"):
+        bogie(track=rs.Track.straight(500.0).with_irregularity("erri_b176_low", seed=1))
