@@ -13,6 +13,7 @@ from types import ModuleType
 
 _MODULE_OF = {
     "ContactPair": "contact_pair",
+    "ContactTable": "contact_table",
     "LinearContact": "contact",
     "LinearModel": "linear_model",
     "Material": "creep",
@@ -30,6 +31,7 @@ _MODULE_OF = {
     "equivalent_conicity": "conicity",
     "linear_model": "linear",
     "linearise": "linear",
+    "load_contact_table": "contact_table",
     "load_profile": "profiles",
     "load_track": "track",
     "load_vehicle": "vehicle",
