@@ -31,7 +31,7 @@
  *             FASTSIM and FaStrip where a cell begins to slip.
  * rs_wheel_rail_failure  which wheel, which variable (0 y, 1 roll, 2 drop: place of the wheel against its rail as in
  *   contact_table.h; 3 yaw; 4 ln(a/b)) and its value, after a status other than RS_OK; wheel is -1 after RS_BAD_SPEED
- * rs_wheel_rail_outputs  of the last rs_wheel_rail_rows that returned RS_OK
+ * rs_wheel_rail_outputs  of the last rs_wheel_rail_rows, which must have returned RS_OK
  *   Returned  wheel    2 n x RS_WHEEL_OUTPUTS, see below
  *             patch    2 n x RS_ZONES x RS_PATCH_OUTPUTS, in the place of its zone; zeros where a zone carries no load
  *

@@ -20,7 +20,7 @@ from railsym.errors import ContactError
 from railsym.hertz import contact_modulus, hertz
 from railsym.kalker import kalker_coefficients
 
-DECADES, NODES_A_DECADE = 3, 32  # of a/b on both sides of 1: cubics between err by 1e-7
+DECADES, NODES_A_DECADE = 3, 64  # of a/b on both sides of 1: cubics between err by 1e-5, the table by 5e-3
 CONTACT_DAMPING = 1.0  # s/m, assumed: 3 % of critical for a wheelset of 1.8 t on Hertzian contact at 66 kN a wheel
 RAIL_SPACING = 1.5  # m, distance of the rail heads of standard gauge (EN 13848-1)
 

@@ -248,12 +248,12 @@ void rs_patch_forces(const rs_wheel_rail *wr, double V, int tangents, const rs_b
 	gather(wr, batch, tangents, &x);
 	contact(wr, V, tangents, &x, &y);
 	for (int l = 0; l < batch->count; l++) {
-		rs_axle_state *axle = batch->axle[l];
-		report(&x, &y, l, batch->patch[l], batch->wheel[l]);
+		rs_wheel_state *wheel = batch->wheel[l];
+		report(&x, &y, l, batch->patch[l], wheel);
 		for (int k = 0; tangents && k < RS_COLUMNS; k++)
 			EACH_AXIS(i) {
-				axle->force_to[k][i] += RS_OF(y.force_to[k][i], l);
-				axle->moment_to[k][i] += RS_OF(y.moment_to[k][i], l);
+				wheel->force_to[k][i] += RS_OF(y.force_to[k][i], l);
+				wheel->moment_to[k][i] += RS_OF(y.moment_to[k][i], l);
 			}
 	}
 }

@@ -40,10 +40,15 @@ def rolling(**rates):
 
 
 def random_state(rng, shift=0.0):
-    """A wheelset well away from its place on rails well away from theirs, in a curve; `shift` to the right, m."""
-    q = rng.normal(size=6) * [2e-2, 1e-3, 1e-5, 8e-3, 1e-4, 1.0] + [0.0, shift, 0.0, 0.0, 0.0, 0.0]
+    """A wheelset away from its place on rails away from theirs, in a curve; `shift` against them to the right, m.
+
+    It rolls with its shift so that both treads stay in contact.
+    """
+    rails = rng.normal(size=(2, 4)) * [1e-4, 1e-5, 4e-3, 5e-4] + rng.normal(size=4) * [1e-3, 1e-5, 0.0, 0.0]
+    q = rng.normal(size=6) * [2e-2, 1e-4, 1e-5, 5e-3, 1e-5, 1.0]
+    q[1] += shift + rails[:, 0].mean()
+    q[4] -= TREAD.slope * (q[1] - rails[:, 0].mean()) / (TREAD.half_spacing - R0 * TREAD.slope)
     u = rolling() + rng.normal(size=6) * [0.1, 0.1, 0.02, 0.05, 0.02, 0.2]
-    rails = rng.normal(size=(2, 4)) * [1e-3, 2e-5, 4e-3, 1e-3]
     return State(q, u, SPEED, rng.normal(size=3) * 0.05, rails)
 
 
