@@ -148,7 +148,7 @@ class WheelOutputs:
     creepage, force : ndarray, shape (wheels, zones, 3)
         xi -, eta -, phi 1/m; Fx N, Fy N, Mz N m on the wheel, in the contact plane.
     x, across, radius, angle, a, b : ndarray, shape (wheels, zones)
-        Place of the contact m, its plane rad and semi-axes m; axes of csrc/contact_table.h.
+        Place of the contact m, its plane rad and semi-axes m; axes of csrc/contact/contact_table.h.
     """
 
     Y: np.ndarray

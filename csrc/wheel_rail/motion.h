@@ -11,7 +11,6 @@
 #ifndef RS_MOTION_H
 #define RS_MOTION_H
 
-#include "../contact_table.h"
 #include "../creep.h"
 #include "../wheel_rail.h"
 
@@ -87,7 +86,6 @@ struct rs_wheel_rail {
 
 typedef int rs_lookup(const rs_contact_table *shape, const double *place, rs_patch *patch, int *count, int *beyond);
 
-rs_lookup *rs_lookup_of(int kind);
 int rs_contact_cones_lookup(const rs_contact_table *shape, const double *place, rs_patch *patch, int *count, int *beyond);
 
 /* Places and motions of both wheels of one wheelset; seed NULL: no tangents. rail 8 numbers, q u w those of the wheelset. */

@@ -10,15 +10,13 @@
 #include "motion.h"
 #include "vectors.h"
 
-rs_lookup *rs_lookup_of(int kind)
+static rs_lookup *lookup_of(int kind)
 {
 	switch (kind) {
 	case RS_CONTACT_CONES:
 		return rs_contact_cones_lookup;
-#ifdef RS_HAVE_CONTACT_TABLE
 	case RS_CONTACT_TABLE:
 		return rs_contact_lookup;
-#endif
 	default:
 		return NULL;
 	}
@@ -29,7 +27,7 @@ static int fit(int wheelsets, const rs_wheelset *wheelset, const rs_creep_settin
 	if (wheelsets <= 0 || creep->strips < 1 || creep->cells < 1 || creep->pieces < 1 || !rs_creep_law_at(creep->law))
 		return 0;
 	for (int k = 0; k < 2 * wheelsets; k++)
-		if (!rs_lookup_of(wheelset[k / 2].wheel[k % 2].kind) || !wheelset[k / 2].wheel[k % 2].shape)
+		if (!lookup_of(wheelset[k / 2].wheel[k % 2].kind) || !wheelset[k / 2].wheel[k % 2].shape)
 			return 0;
 	return 1;
 }
@@ -86,7 +84,7 @@ static int look_up(rs_wheel_rail *wr, int number)
 	for (int k = 0; k < RS_PLACE_SIZE; k++)
 		if (!isfinite(wheel->place[k]))
 			return fail(wr, RS_NOT_FINITE, number, k, wheel->place[k]);
-	int status = rs_lookup_of(given->kind)(given->shape, wheel->place, wheel->patch, &wheel->count, &beyond);
+	int status = lookup_of(given->kind)(given->shape, wheel->place, wheel->patch, &wheel->count, &beyond);
 	if (status != RS_OK)
 		return fail(wr, status, number, beyond, wheel->place[beyond]);
 	for (int k = 0; k < wheel->count; k++) {
@@ -203,11 +201,13 @@ int rs_wheel_rail_rows(rs_wheel_rail *wr, const double *q, const double *u, doub
 	return RS_OK;
 }
 
-void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, double *value)
+void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, double *value, double *place)
 {
 	*wheel = wr->failed_wheel;
 	*variable = wr->failed_variable;
 	*value = wr->failed_value;
+	for (int k = 0; k < RS_PLACE_SIZE; k++)
+		place[k] = wr->failed_wheel < 0 ? 0.0 : wr->axle[wr->failed_wheel / 2].wheel[wr->failed_wheel % 2].place[k];
 }
 
 void rs_wheel_rail_outputs(const rs_wheel_rail *wr, double *wheel, double *patch)
