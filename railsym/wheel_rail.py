@@ -220,12 +220,13 @@ class WheelRail:
     def __init__(self, vehicle, contact, *, law="fastsim", grid=(20, 20), friction=None, kalker_weight=None, damping=CONTACT_DAMPING,
                  material=None, reduction=(1.0, 1.0), rail_spacing=RAIL_SPACING, wheel_loads=None):
         from railsym import _core
+        from railsym._core_wheel_rail import shape_of
 
         self.wheelsets, given, loads = _places(vehicle)
         self._law, self._grid, self._reduction = _known(law, _core.CREEP_LAWS), _checked_grid(grid), _checked_reduction(reduction)
         self._material = material or _material(given)
         left, right = contact if isinstance(contact, (tuple, list)) else (contact, contact)
-        shapes = (left.wheel_shape(-1), right.wheel_shape(1))
+        shapes = (shape_of(left, -1), shape_of(right, 1))
         wheels = len(self.wheelsets) * 2
         self._spacing = _positive(rail_spacing, "rail_spacing", "m")
         self._wheel_values = {
@@ -316,17 +317,18 @@ class WheelRail:
             found = self.outputs()
             return float(np.sum(found.load[wheel] * np.cos(found.angle[wheel]))) - loads[wheel]
 
-        def bracket(wheel):
+        def sink(wheel):
             low, high = 0.0, 1e-5
-            while lack(low, wheel) > 0.0:
-                low -= 1e-5 if low == 0.0 else -low
-            while lack(high, wheel) < 0.0:
-                high *= 2.0
-            return low, high
+            try:
+                while lack(low, wheel) > 0.0:
+                    low = 2.0 * low - 1e-5
+                while lack(high, wheel) < 0.0:
+                    high *= 2.0
+            except ContactError as error:
+                raise ContactError(f"the contact cannot carry the static load of {self._core.names[wheel]}, {loads[wheel]:.6g} N: {error}") from None
+            return brentq(lack, low, high, args=(wheel,), xtol=1e-15, rtol=1e-14)
 
-        if not np.all(loads >= 0.0):
-            raise ContactError(f"wheel_loads (N) must not be negative, got {loads}")
-        return np.array([brentq(lack, *bracket(k), args=(k,), xtol=1e-15, rtol=1e-14) for k in range(len(loads))])
+        return np.array([sink(wheel) for wheel in range(len(loads))])
 
 
 def _places(vehicle):
