@@ -12,6 +12,7 @@ from importlib import import_module
 from types import ModuleType
 
 _MODULE_OF = {
+    "ConicalContact": "wheel_rail",
     "ContactPair": "contact_pair",
     "LinearContact": "contact",
     "LinearModel": "linear_model",
@@ -20,6 +21,7 @@ _MODULE_OF = {
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
     "Vehicle": "vehicle",
+    "WheelRail": "wheel_rail",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",

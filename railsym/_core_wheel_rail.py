@@ -76,8 +76,10 @@ def table(made):
         name, unit = (("lateral shift at the contact", "m"), ("roll", "rad"))[number]
         key = ("shift", "roll")[number]
         start, step, nodes = (made.value(part) for part in (f"{key}_start", f"{key}_step", f"{key}s"))
-        value = place[1] if number else place[0] - r0 * place[1]
-        return _beyond(name, value, unit, start + step, start + (nodes - 2) * step)
+        value, low, high = place[1] if number else place[0] - r0 * place[1], start + step, start + (nodes - 2) * step
+        if low <= value <= high:
+            return f"at {name} {value:.4f} {unit} it meets its rail beyond an end of one of the profiles"
+        return _beyond(name, value, unit, low, high)
 
     return Shape(lib.RS_CONTACT_TABLE, made.pointer, r0, outside, made)
 

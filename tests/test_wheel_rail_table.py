@@ -3,27 +3,20 @@
 
 import numpy as np
 import pytest
-from oracles.wheel_rail_cases import R0, SPEED, TREAD, TREAD_ONLY, random_state, rolling, rows_of, wheelset
+from oracles.wheel_rail_cases import R0, SPEED, TREAD_ONLY, random_state, rolling, rows_of, wheelset
 from oracles.wheel_rail_motion import State
 
 import railsym as rs
-from railsym._core_contact import Surfaces, Table
 from railsym.errors import ContactError
-from railsym.hertz import contact_modulus
 from railsym.wheel_rail import Cone, ConicalContact, WheelRail, WheelsetPlace
 
 
 @pytest.fixture(scope="module")
 def cone_table():
     """Table of the cone TREAD on its round rail."""
-    angle, radius = np.arctan(TREAD.slope), TREAD.rail_radius
-    centre = TREAD.half_spacing + radius * np.sin(angle)
-    arc = np.arange(-0.03, 0.03, 2e-4) / radius - angle
-    rail = (2e-4, centre + radius * np.sin(arc), radius * np.cos(angle) - radius * np.cos(arc), np.cos(arc), np.sin(arc))
-    across = TREAD.half_spacing + np.arange(-0.05, 0.05, 5e-4)
-    wheel = (across[0], 5e-4, R0 - TREAD.slope * (across - TREAD.half_spacing), np.full(across.shape, -TREAD.slope))
-    surfaces = Surfaces(rail, wheel, R0, TREAD.half_spacing)
-    return Table.built(surfaces, (-6e-3, 1e-3, 13, -4e-3, 1e-3, 9), 8, (np.inf, -np.inf), contact_modulus(2.1e11, 0.28), 3e-4)
+    from benchmarks.wheel_rail import table_of_a_cone
+
+    return table_of_a_cone()
 
 
 def test_table_of_a_cone_gives_the_forces_of_its_closed_form(cone_table):
@@ -40,21 +33,27 @@ def test_table_of_a_cone_gives_the_forces_of_its_closed_form(cone_table):
         np.testing.assert_allclose(rows[0], rows[1], rtol=0, atol=0.04 * np.abs(rows[1]).max())
 
 
-def test_pencil_over_a_table_is_the_derivative_of_the_rows(cone_table):
-    forces = wheelset(cone_table, law="shen_hedrick_elkins", damping=1.0)
+@pytest.mark.parametrize("law", ["kalker_linear", "shen_hedrick_elkins", "polach"])
+def test_pencil_over_a_table_is_the_derivative_of_the_rows(law):
+    """The wheel's curvature, so a/b and Kalker's coefficients, change with its place."""
+    from benchmarks.wheel_rail import table_of_a_cone
+
+    forces = wheelset(table_of_a_cone(wave=1.5), law=law, damping=1.0)
     rng = np.random.default_rng(431)
     weights = np.array([1, -8, 8, -1]) / 12
+    ratios = []
     for shift in (0.0, 1.3e-3, -2.4e-3):
         state = random_state(rng, shift)
-        for seed, steps in (((1.0, 0.0), [1e-6, 1e-6, 1e-6, 1e-5, 1e-6, 1e-3]), ((0.0, 1.0), [1e-3] * 6)):
+        for seed, steps in (((1.0, 0.0), [1e-6, 1e-6, 2e-7, 1e-5, 2e-7, 1e-3]), ((0.0, 1.0), [1e-3] * 6)):
             _, blocks = rows_of(forces, state, seed)
             for j, step in enumerate(steps):
                 at = [rows_of(forces, State(state.q + k * step * seed[0] * np.eye(6)[j], state.u + k * step * seed[1] * np.eye(6)[j],
                                             SPEED, state.w, state.rails))[0][0] for k in (-2, -1, 1, 2)]
                 expected = weights @ at / step
                 scale = max(1.0, np.abs(expected).max())
-                # cubics between the nodes: the fourth difference sees their third slope's jumps where it spans one, (1e-6/1e-3)^2
-                np.testing.assert_allclose(blocks[0, :, j] / scale, expected / scale, rtol=0, atol=2e-5)
+                np.testing.assert_allclose(blocks[0, :, j] / scale, expected / scale, rtol=0, atol=5e-7)
+        ratios += list(forces.outputs().a[:, 0] / forces.outputs().b[:, 0])
+    assert max(ratios) > 1.1 * min(ratios)
 
 
 def test_errors_of_a_table_name_wheel_quantity_and_range(cone_table):
@@ -97,6 +96,17 @@ def test_wheelsets_are_independent_of_each_other():
         np.testing.assert_array_equal(own_blocks[0], blocks[k])
 
 
+def test_left_and_right_may_differ():
+    """Profiles, friction and loads of their own."""
+    steep = ConicalContact((Cone(0.2),))
+    forces = wheelset((TREAD_ONLY, steep), law="polach", friction=[0.1, 0.4], wheel_loads=[5e4, 7e4])
+    forces.rows([0, 0, 0, 0.01, 0, 0], rolling(y=1.0), SPEED)  # full slip sideways
+    found = forces.outputs()
+    np.testing.assert_allclose(np.tan(found.angle[:, 0]), [0.1, 0.2], rtol=1e-3)
+    np.testing.assert_allclose(np.linalg.norm(found.force[:, 0, :2], axis=1) / found.load[:, 0], [0.1, 0.4], rtol=0.1)
+    assert found.load[1, 0] > 1.3 * found.load[0, 0]
+
+
 # --- errors -----------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("speed", [0.0, -3.0, float("nan")])
@@ -133,3 +143,18 @@ def test_what_is_not_a_contact_or_has_no_wheelset():
         wheelset("S1002")
     with pytest.raises(ContactError, match="at least one wheelset"):
         WheelRail([], TREAD_ONLY)
+
+
+def test_slender_ellipses_beyond_the_coefficients_are_refused():
+    from railsym._core_wheel_rail import WheelRailCore, cones
+    from railsym.wheel_rail import kalker_table
+
+    start, step, cubics = kalker_table(0.28)
+    shape = cones(R0, [TREAD_ONLY._zone(TREAD_ONLY.zones[0]) | {"a": 1.0, "b": 1e-4}], (0.02, 0.1, 0.02))
+    wheel = {"shape": shape, "sink": 5e-5, "friction": 0.3, "weight": 1.0, "damping": 0.0}
+    creep = {"law": "polach", "strips": 1, "cells": 1, "modulus": 8.2e10, "adhesion": 1.0, "slip": 1.0, "start": start, "step": step, "c": cubics}
+    given = [{"first": 0, "offset": (0.0, 0.0, -R0), "spacing": 1.5, "wheels": (wheel, wheel)}]
+    with pytest.raises(ContactError, match="wheelset 1, left: a contact ellipse with a/b = 1e.04 is outside .* 0.001 to 1000"):
+        WheelRailCore(given, creep).rows(np.zeros(6), rolling(), SPEED, None, None, None)
+    with pytest.raises(ContactError, match="cannot be made: .* grid 0 x 1"):
+        WheelRailCore(given, creep | {"strips": 0})
