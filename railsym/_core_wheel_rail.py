@@ -30,6 +30,8 @@ class Shape:
         The shape; `keep` holds its memory.
     r0 : float
         m, height of the wheelset's centre over the top of rail at drop = 0.
+    half_spacing : float
+        m, lateral place of the tape circle from the wheelset's centre, and of the rail's head from the track's.
     outside : callable
         (number of the quantity that left its range, place (4)) -> what to say of it.
     keep : object
@@ -38,11 +40,12 @@ class Shape:
     kind: int
     pointer: object
     r0: float
+    half_spacing: float
     outside: object
     keep: object
 
 
-def cones(r0, zones, limits):
+def cones(r0, zones, limits, half_spacing=0.75):
     """Shape of cones on round rails.
 
     Parameters
@@ -62,7 +65,7 @@ def cones(r0, zones, limits):
         name, unit = PLACE[number]
         return _beyond(name, place[number], unit, -limits[number], limits[number])
 
-    return Shape(lib.RS_CONTACT_CONES, memory, r0, outside, memory)
+    return Shape(lib.RS_CONTACT_CONES, memory, r0, half_spacing, outside, memory)
 
 
 def table(made):
@@ -81,7 +84,7 @@ def table(made):
             return f"at {name} {value:.4f} {unit} it meets its rail beyond an end of one of the profiles"
         return _beyond(name, value, unit, low, high)
 
-    return Shape(lib.RS_CONTACT_TABLE, made.pointer, r0, outside, made)
+    return Shape(lib.RS_CONTACT_TABLE, made.pointer, r0, made.value("spacing"), outside, made)
 
 
 def _beyond(name, value, unit, low, high):

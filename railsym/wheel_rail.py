@@ -22,7 +22,6 @@ from railsym.kalker import kalker_coefficients
 
 DECADES, NODES_A_DECADE = 3, 64  # of a/b on both sides of 1: cubics between err by 1e-5, the table by 5e-3
 CONTACT_DAMPING = 1.0  # s/m, assumed: 3 % of critical for a wheelset of 1.8 t on Hertzian contact at 66 kN a wheel
-RAIL_SPACING = 1.5  # m, distance of the rail heads of standard gauge (EN 13848-1)
 
 
 @lru_cache(maxsize=32)
@@ -118,7 +117,7 @@ class ConicalContact:
         """Shape of one wheel for the C library; both sides are alike."""
         from railsym._core_wheel_rail import cones
 
-        return cones(self.wheel_radius, [self._zone(zone) for zone in self.zones], self.limits)
+        return cones(self.wheel_radius, [self._zone(zone) for zone in self.zones], self.limits, self.zones[0].half_spacing)
 
     def _zone(self, zone):
         angle = np.arctan(zone.slope)
@@ -205,8 +204,8 @@ class WheelRail:
         Of both bodies; the vehicle file's, else steel.
     reduction : pair of float
         Polach's factors kA, kS.
-    rail_spacing : float
-        m, distance of the rail heads; their cross level turns both rails by itself over this.
+    rail_spacing : float, optional
+        m, distance of the rail heads; their cross level turns both rails by itself over this. Default: that of the contact's tape circles.
     wheel_loads : ndarray, shape (wheels,), optional
         N: every wheel sinks into its rail by what carries its load, so that the coordinates at zero are in equilibrium.
         Default: the static wheel loads of a Vehicle; none of a list of WheelsetPlace, which then does not sink.
@@ -218,7 +217,7 @@ class WheelRail:
     """
 
     def __init__(self, vehicle, contact, *, law="fastsim", grid=(20, 20), friction=None, kalker_weight=None, damping=CONTACT_DAMPING,
-                 material=None, reduction=(1.0, 1.0), rail_spacing=RAIL_SPACING, wheel_loads=None):
+                 material=None, reduction=(1.0, 1.0), rail_spacing=None, wheel_loads=None):
         from railsym import _core
         from railsym._core_wheel_rail import shape_of
 
@@ -228,7 +227,7 @@ class WheelRail:
         left, right = contact if isinstance(contact, (tuple, list)) else (contact, contact)
         shapes = (shape_of(left, -1), shape_of(right, 1))
         wheels = len(self.wheelsets) * 2
-        self._spacing = _positive(rail_spacing, "rail_spacing", "m")
+        self._spacing = _positive(shapes[0].half_spacing + shapes[1].half_spacing if rail_spacing is None else rail_spacing, "rail_spacing", "m")
         self._wheel_values = {
             "friction": _each(given.get("friction", 0.3) if friction is None else friction, wheels, "friction", "-"),
             "weight": _each(given.get("kalker_weight", 1.0) if kalker_weight is None else kalker_weight, wheels, "kalker_weight", "-"),
