@@ -62,5 +62,5 @@ def table_of_a_cone(wave=0.0):
     away = across - _SPACING
     k = 2.0 * np.pi / 0.06
     wheel = (across[0], 5e-4, _RADIUS - _SLOPE * away + wave / k**2 * np.sin(k * away), -_SLOPE + wave / k * np.cos(k * away))
-    return Table.built(Surfaces(rail, wheel, _RADIUS, _SPACING), (-6e-3, 1e-3, 13, -4e-3, 1e-3, 9), 8, (np.inf, -np.inf),
-                       contact_modulus(2.1e11, 0.28), 3e-4)
+    nodes = (-6e-3, 1e-3, 13, -4e-3, 1e-3, 9, 8, 1, 3e-4, _RADIUS, _SPACING)  # railsym._core_contact.SHAPE
+    return Table.built(Surfaces(rail, wheel, _RADIUS, _SPACING), nodes, (np.inf, -np.inf), (1,), contact_modulus(2.1e11, 0.28))
