@@ -20,17 +20,17 @@ def cone_table():
 
 
 def test_table_of_a_cone_gives_the_forces_of_its_closed_form(cone_table):
-    """The elastic contact of the table is not Hertz's: loads to its few per cent, so compared at equal loads."""
+    """Two theories of the elastic contact: Hertz's ellipse here, the table's strips there; 0.2 % in the penetration at rest."""
     over_table, closed = wheelset(cone_table), wheelset(TREAD_ONLY)
-    assert np.abs(over_table.sink / closed.sink - 1.0).max() < 0.05
+    np.testing.assert_allclose(over_table.sink, closed.sink, rtol=5e-3)
     for y, yaw in ((0.0, 0.0), (1e-3, 0.0), (-2e-3, 4e-3), (3e-3, -6e-3)):
         q, u = [0, y, 0, yaw, -0.1 * y / 0.704, 0], rolling(y=0.02, spin=0.05)
         rows = [forces.rows(q, u, SPEED)[0][0] for forces in (over_table, closed)]
         a, b = (forces.outputs() for forces in (over_table, closed))
-        np.testing.assert_allclose(a.creepage[:, 0], b.creepage[:, 0], rtol=0, atol=2e-5)
+        np.testing.assert_allclose(a.creepage[:, 0], b.creepage[:, 0], rtol=0, atol=1e-5)
         np.testing.assert_allclose(a.angle[:, 0], b.angle[:, 0], rtol=0, atol=1e-4)
-        np.testing.assert_allclose(a.x[:, 0], b.x[:, 0], rtol=0, atol=1e-5)
-        np.testing.assert_allclose(rows[0], rows[1], rtol=0, atol=0.04 * np.abs(rows[1]).max())
+        np.testing.assert_allclose(a.x[:, 0], b.x[:, 0], rtol=0, atol=5e-6)
+        np.testing.assert_allclose(rows[0], rows[1], rtol=0, atol=5e-4 * np.abs(rows[1]).max())
 
 
 @pytest.mark.parametrize("law", ["kalker_linear", "shen_hedrick_elkins", "polach"])
