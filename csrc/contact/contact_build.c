@@ -158,8 +158,10 @@ static int fill_levels(builder *b, int zone, rs_zone part, const closed *own, in
 {
 	rs_contact_table *t = b->table;
 	double length[RS_STRIPS] = {0.0}; /* of the strips at the level before, over sqrt(normal) */
+	double last = tau_of(t, t->levels - 1), above = own->drop - b->posture.gap_drop;
+	rs_limit_search(&b->posture, t->deepest * last * last / own->cosine + above);
 	for (int level = 1; level < t->levels; level++) {
-		double tau = tau_of(t, level), normal = t->deepest * tau * tau, depth = normal / own->cosine + own->drop - b->posture.gap_drop;
+		double tau = tau_of(t, level), normal = t->deepest * tau * tau, depth = normal / own->cosine + above;
 		if (rs_patch_fields(&b->posture, &b->influence, b->modulus, part, depth, normal, length, field_node(t, zone, shift, roll, level)) != RS_OK)
 			return RS_NOT_CONVERGED;
 	}

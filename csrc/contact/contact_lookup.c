@@ -138,25 +138,27 @@ INLINE void put(const double f[FIELD_SLOPES][RS_FIELDS], int field, const slopes
 	to[4] = d[3];
 }
 
-/* The contact of a yawed wheel: ahead by r t psi, inward by r t^2 psi^2, below by r t^2 psi^2/2 (t = tan of the slope to the axle). */
+/* The contact of a yawed wheel: ahead by r t psi, inward by r t psi^2, below by r t^2 psi^2/2 (t = tan of the slope to the axle). */
 INLINE void turn(double yaw, const double *slope_angle, rs_patch *patch)
 {
 	double t = tan(slope_angle[0]), t_angle = 1.0 + t * t, r = patch->radius[0], square = yaw * yaw;
-	double radius_slope[5];
-	for (int k = 1; k < 5; k++)
-		radius_slope[k] = patch->radius[k];
-	patch->x[0] = r * t * yaw;
-	patch->across[0] -= r * t * t * square;
-	patch->radius[0] += 0.5 * r * t * t * square;
+	double arm = r * t, arm_slope[5], half = 0.5 * arm * t, half_slope[5];
 	for (int k = 1; k < 5; k++) {
-		double dt = t_angle * slope_angle[k], dr = radius_slope[k], arm = dr * t * t + 2.0 * r * t * dt;
-		patch->x[k] = (dr * t + r * dt) * yaw;
-		patch->across[k] -= arm * square;
-		patch->radius[k] += 0.5 * arm * square;
+		double dt = t_angle * slope_angle[k], dr = patch->radius[k];
+		arm_slope[k] = dr * t + r * dt;
+		half_slope[k] = 0.5 * (arm_slope[k] * t + arm * dt);
 	}
-	patch->x[4] += r * t;
-	patch->across[4] -= 2.0 * r * t * t * yaw;
-	patch->radius[4] += r * t * t * yaw;
+	patch->x[0] = arm * yaw;
+	patch->across[0] -= arm * square;
+	patch->radius[0] += half * square;
+	for (int k = 1; k < 5; k++) {
+		patch->x[k] = arm_slope[k] * yaw;
+		patch->across[k] -= arm_slope[k] * square;
+		patch->radius[k] += half_slope[k] * square;
+	}
+	patch->x[4] += arm;
+	patch->across[4] -= 2.0 * arm * yaw;
+	patch->radius[4] += 2.0 * half * yaw;
 }
 
 INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const slopes *p, const double *place,

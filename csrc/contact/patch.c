@@ -48,13 +48,25 @@ static double edge(const rs_posture *p, int in, int out, double depth, rs_zone z
 	return in + t * (out - in);
 }
 
+void rs_limit_search(rs_posture *p, double depth)
+{
+	int last = p->from->rail_count - 1;
+	p->first = last;
+	p->last = 1;
+	for (int k = 1; k < last; k++)
+		if (overlap(p, k, depth) > 0.0) {
+			p->first = k < p->first ? k : p->first;
+			p->last = k + 1;
+		}
+}
+
 static void find_runs(const rs_posture *p, double depth, rs_zone zone, runs *out)
 {
 	int before = 0;
 	out->count = 0;
 	out->total = 0.0;
-	for (int k = 1; k < p->from->rail_count && out->count < MOST_RUNS; k++) {
-		int now = k < p->from->rail_count - 1 && inside(p, k, depth, zone);
+	for (int k = p->first; k <= p->last && out->count < MOST_RUNS; k++) {
+		int now = k < p->last && inside(p, k, depth, zone);
 		if (now && !before)
 			out->from[out->count] = edge(p, k, k - 1, depth, zone);
 		if (before && !now) {
