@@ -91,6 +91,120 @@ enum { RS_ZONES = 3, RS_PLACE_SIZE = 4, RS_TABLE_SHAPE = 11 };
 
 typedef struct rs_contact_table rs_contact_table;
 
+typedef struct {
+	int rail_count;
+	double rail_step;              /* m of arc between points */
+	const double *rail_y;          /* rail_count, m, as the rail lies */
+	const double *rail_z;          /* m, 0 at the top, down */
+	const double *rail_cosine;     /* of the rail's slope */
+	const double *rail_sine;
+	int wheel_count;
+	double wheel_start, wheel_step; /* m, along the axle */
+	const double *wheel_radius_at; /* wheel_count, m */
+	const double *wheel_slope_at;  /* dr/dy */
+	double wheel_radius;           /* m, r0 */
+	double spacing;                /* m, tape circle from the wheelset's centre */
+} rs_surfaces;
+
+typedef struct {
+	double load[5];      /* N, elastic normal force, > 0; then its slopes over y, roll, drop, yaw; likewise: */
+	double x[5];         /* m, place of the contact ahead of the wheelset's centre, in the wheelset's axes */
+	double across[5];    /* m, from the wheelset's centre along the axle, + to the field */
+	double radius[5];    /* m, below the axle */
+	double angle[5];     /* rad, contact plane to the track plane, positive as at a flange */
+	double a[5];         /* m, semi-axis along x */
+	double b[5];         /* m, semi-axis across */
+	int zone;            /* 0 tread ... */
+} rs_patch;
+
+int rs_rigid_contact(const rs_surfaces *from, int n, const double *place, double *contact);
+int rs_contact_table_check(const double *shape);
+int rs_contact_table_build(const rs_surfaces *from, const double *shape, const double *cuts, const int *parts,
+                           double modulus, rs_contact_table **made, int *failures);
+int rs_contact_table_of_arrays(const double *shape, const double *axes, const double *const *closure,
+                               const double *const *field, rs_contact_table **made);
+void rs_contact_table_shape(const rs_contact_table *table, double *shape, double *axes);
+void rs_contact_table_arrays(const rs_contact_table *table, int zone, double *closure, double *field);
+void rs_contact_table_free(rs_contact_table *table);
+int rs_contact_lookup(const rs_contact_table *table, const double *place, rs_patch *patch, int *count, int *beyond);
+int rs_contact_lookup_many(const rs_contact_table *table, int n, const double *place, rs_patch *patch, int *count,
+                           int *failed, int *beyond);
+
+enum { RS_BAD_SPEED = 8 };
+enum { RS_CONTACT_TABLE = 0, RS_CONTACT_CONES = 1 };
+enum {
+	RS_WHEEL_Y = 0,
+	RS_WHEEL_Q = 1,
+	RS_WHEEL_X = 2,
+	RS_WHEEL_TGAMMA = 3,
+	RS_WHEEL_PATCHES = 4,
+	RS_WHEEL_OUTPUTS = 5
+};
+enum {
+	RS_PATCH_LOAD = 0,
+	RS_PATCH_XI = 1,
+	RS_PATCH_FX = 4,
+	RS_PATCH_X = 7,
+	RS_PATCH_ACROSS = 8,
+	RS_PATCH_RADIUS = 9,
+	RS_PATCH_ANGLE = 10,
+	RS_PATCH_A = 11,
+	RS_PATCH_B = 12,
+	RS_PATCH_OUTPUTS = 13
+};
+
+typedef struct {
+	int kind;             /* of contact: RS_CONTACT_TABLE, RS_CONTACT_CONES */
+	const void *shape;    /* rs_contact_table or rs_contact_cones */
+	double r0;            /* m, height of the wheelset's centre over the top of rail where the contact's drop is 0 */
+	double sink;          /* m, added to the drop: how far the design position has sunk into the rail */
+	double friction;      /* - */
+	double weight;        /* -, factor on Kalker's coefficients */
+	double damping;       /* s/m, chi: load = elastic load (1 + chi penetration rate), not below zero */
+} rs_wheel;
+
+typedef struct {
+	int first;            /* coordinate x; y z yaw roll spin follow */
+	double offset[3];     /* m, design place of the centre in the track frame; the first is not used in the contact */
+	double spacing;       /* m, lateral distance of the rails' heads: their cross level turns both of them */
+	rs_wheel wheel[2];    /* left, right */
+} rs_wheelset;
+
+typedef struct {
+	int law;              /* RS_CREEP_... */
+	int strips, cells;    /* grid of FASTSIM, FaStrip */
+	double modulus;       /* N/m^2, shear */
+	double adhesion, slip; /* Polach's kA, kS */
+	int pieces;           /* of the coefficients' cubics over ln(a/b) */
+	double start, step;   /* ln(a/b) of the first node, and from node to node */
+	const double *c;      /* pieces x 4 x 4: C11, C22, C23, C33 = c0 + t (c1 + t (c2 + t c3)), t = ln(a/b) - node */
+} rs_creep_settings;
+
+typedef struct rs_wheel_rail rs_wheel_rail;
+
+rs_wheel_rail *rs_wheel_rail_create(int wheelsets, const rs_wheelset *wheelset, const rs_creep_settings *creep);
+void rs_wheel_rail_free(rs_wheel_rail *wr);
+int rs_wheel_rail_rows(rs_wheel_rail *wr, const double *q, const double *u, double V, const double *w,
+                       const double *rail, const double *seed, double *rows, double *blocks);
+void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, double *value, double *place);
+void rs_wheel_rail_outputs(const rs_wheel_rail *wr, double *wheel, double *patch);
+
+typedef struct {
+	double slope;          /* -, the radius falls by it towards the field */
+	double b0, radius;     /* m, a circle of the cone: from the wheelset's centre along the axle, and its radius */
+	double rail_y, rail_z; /* m, centre of the rail's circle: from the track's centre line, below the top of rail */
+	double rail_radius;    /* m, > 0 */
+	double a, b;           /* m^(1/2), semi-axes over the square root of the penetration */
+	double stiffness;      /* N/m^(3/2), load over penetration^(3/2) */
+} rs_cone;
+
+typedef struct {
+	int cones;             /* 1 ... RS_ZONES, tread first */
+	double r0;             /* m, height of the wheelset's centre over the top of rail at drop = 0 */
+	double limit[3];       /* largest |y| m, |roll| rad, |drop| m; yaw has none */
+	rs_cone cone[3];
+} rs_contact_cones;
+
 enum { RS_OUT_OF_TRACK = 20 };
 enum { RS_TRACK_POWERS = 8, RS_TRACK_PLACE_POWERS = 14, RS_TRACK_RAILS = 8 };
 
@@ -195,118 +309,5 @@ int rs_travel_bodies(rs_travel *travel, rs_model *model, int kernel, const int *
 int rs_travel_pairs(rs_travel *travel, rs_model *model, int kernel, int count, const int *instance, const int *frames,
                     const double *offsets);
 int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame);
-enum { RS_BAD_SPEED = 8 };
-enum { RS_CONTACT_TABLE = 0, RS_CONTACT_CONES = 1 };
-enum {
-	RS_WHEEL_Y = 0,
-	RS_WHEEL_Q = 1,
-	RS_WHEEL_X = 2,
-	RS_WHEEL_TGAMMA = 3,
-	RS_WHEEL_PATCHES = 4,
-	RS_WHEEL_OUTPUTS = 5
-};
-enum {
-	RS_PATCH_LOAD = 0,
-	RS_PATCH_XI = 1,
-	RS_PATCH_FX = 4,
-	RS_PATCH_X = 7,
-	RS_PATCH_ACROSS = 8,
-	RS_PATCH_RADIUS = 9,
-	RS_PATCH_ANGLE = 10,
-	RS_PATCH_A = 11,
-	RS_PATCH_B = 12,
-	RS_PATCH_OUTPUTS = 13
-};
-
-typedef struct {
-	int kind;             /* of contact: RS_CONTACT_TABLE, RS_CONTACT_CONES */
-	const void *shape;    /* rs_contact_table or rs_contact_cones */
-	double r0;            /* m, height of the wheelset's centre over the top of rail where the contact's drop is 0 */
-	double sink;          /* m, added to the drop: how far the design position has sunk into the rail */
-	double friction;      /* - */
-	double weight;        /* -, factor on Kalker's coefficients */
-	double damping;       /* s/m, chi: load = elastic load (1 + chi penetration rate), not below zero */
-} rs_wheel;
-
-typedef struct {
-	int first;            /* coordinate x; y z yaw roll spin follow */
-	double offset[3];     /* m, design place of the centre in the track frame; the first is not used in the contact */
-	double spacing;       /* m, lateral distance of the rails' heads: their cross level turns both of them */
-	rs_wheel wheel[2];    /* left, right */
-} rs_wheelset;
-
-typedef struct {
-	int law;              /* RS_CREEP_... */
-	int strips, cells;    /* grid of FASTSIM, FaStrip */
-	double modulus;       /* N/m^2, shear */
-	double adhesion, slip; /* Polach's kA, kS */
-	int pieces;           /* of the coefficients' cubics over ln(a/b) */
-	double start, step;   /* ln(a/b) of the first node, and from node to node */
-	const double *c;      /* pieces x 4 x 4: C11, C22, C23, C33 = c0 + t (c1 + t (c2 + t c3)), t = ln(a/b) - node */
-} rs_creep_settings;
-
-typedef struct rs_wheel_rail rs_wheel_rail;
-
-rs_wheel_rail *rs_wheel_rail_create(int wheelsets, const rs_wheelset *wheelset, const rs_creep_settings *creep);
-void rs_wheel_rail_free(rs_wheel_rail *wr);
-int rs_wheel_rail_rows(rs_wheel_rail *wr, const double *q, const double *u, double V, const double *w,
-                       const double *rail, const double *seed, double *rows, double *blocks);
-void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, double *value);
-void rs_wheel_rail_outputs(const rs_wheel_rail *wr, double *wheel, double *patch);
-
-typedef struct {
-	double slope;          /* -, the radius falls by it towards the field */
-	double b0, radius;     /* m, a circle of the cone: from the wheelset's centre along the axle, and its radius */
-	double rail_y, rail_z; /* m, centre of the rail's circle: from the track's centre line, below the top of rail */
-	double rail_radius;    /* m, > 0 */
-	double a, b;           /* m^(1/2), semi-axes over the square root of the penetration */
-	double stiffness;      /* N/m^(3/2), load over penetration^(3/2) */
-} rs_cone;
-
-typedef struct {
-	int cones;             /* 1 ... RS_ZONES, tread first */
-	double r0;             /* m, height of the wheelset's centre over the top of rail at drop = 0 */
-	double limit[3];       /* largest |y| m, |roll| rad, |drop| m; yaw has none */
-	rs_cone cone[3];
-} rs_contact_cones;
-typedef struct {
-	int rail_count;
-	double rail_step;              /* m of arc between points */
-	const double *rail_y;          /* rail_count, m, as the rail lies */
-	const double *rail_z;          /* m, 0 at the top, down */
-	const double *rail_cosine;     /* of the rail's slope */
-	const double *rail_sine;
-	int wheel_count;
-	double wheel_start, wheel_step; /* m, along the axle */
-	const double *wheel_radius_at; /* wheel_count, m */
-	const double *wheel_slope_at;  /* dr/dy */
-	double wheel_radius;           /* m, r0 */
-	double spacing;                /* m, tape circle from the wheelset's centre */
-} rs_surfaces;
-
-typedef struct {
-	double load[5];      /* N, elastic normal force, > 0; then its slopes over y, roll, drop, yaw; likewise: */
-	double x[5];         /* m, place of the contact ahead of the wheelset's centre, in the wheelset's axes */
-	double across[5];    /* m, from the wheelset's centre along the axle, + to the field */
-	double radius[5];    /* m, below the axle */
-	double angle[5];     /* rad, contact plane to the track plane, positive as at a flange */
-	double a[5];         /* m, semi-axis along x */
-	double b[5];         /* m, semi-axis across */
-	int zone;            /* 0 tread ... */
-} rs_patch;
-
-int rs_rigid_contact(const rs_surfaces *from, int n, const double *place, double *contact);
-int rs_contact_table_check(const double *shape);
-int rs_contact_table_build(const rs_surfaces *from, const double *shape, const double *cuts, const int *parts,
-                           double modulus, rs_contact_table **made, int *failures);
-int rs_contact_table_of_arrays(const double *shape, const double *axes, const double *const *closure,
-                               const double *const *field, rs_contact_table **made);
-void rs_contact_table_shape(const rs_contact_table *table, double *shape, double *axes);
-void rs_contact_table_arrays(const rs_contact_table *table, int zone, double *closure, double *field);
-void rs_contact_table_free(rs_contact_table *table);
-int rs_contact_lookup(const rs_contact_table *table, const double *place, rs_patch *patch, int *count, int *beyond);
-int rs_contact_lookup_many(const rs_contact_table *table, int n, const double *place, rs_patch *patch, int *count,
-                           int *failed, int *beyond);
-
 void rs_integrator_travel(rs_integrator *integrator, rs_travel *travel);
 int rs_integrator_wheels(rs_integrator *integrator, rs_wheel_rail *wheels, int wheelsets, const int *first);

@@ -78,7 +78,10 @@
  *   Notes     No load or no friction: no force, no slopes. a, b, modulus, weight and coefficients must be positive;
  *             that is not checked. No allocation, no state. One law a file in csrc/creep.
  *
+ * rs_integrator_...    integration in time: contract in integrator.h; rs_travel_... track frames in motion: travel.h
  * rs_track_...         the track's frames and rails: contracts in track.h
+ * rs_wheel_rail_...    wheel-rail forces in motion: contract in wheel_rail.h
+ * rs_contact_cones     contact in closed form, for rs_wheel_rail_...: csrc/wheel_rail/cones.c
  */
 #ifndef RAILSYM_H
 #define RAILSYM_H

@@ -29,9 +29,13 @@
  *   Notes     No allocation. One thread at a time an object. Same machine, same input: same bytes.
  *             Loads and forces are continuous; slopes jump where a patch lifts off against its damping, and inside
  *             FASTSIM and FaStrip where a cell begins to slip.
- * rs_wheel_rail_failure  which wheel, which variable (0 y, 1 roll, 2 drop: place of the wheel against its rail as in
- *   contact_table.h; 3 yaw; 4 ln(a/b)) and its value, after a status other than RS_OK; wheel is -1 after RS_BAD_SPEED
- * rs_wheel_rail_outputs  of the last rs_wheel_rail_rows that returned RS_OK
+ * rs_wheel_rail_failure  after a status other than RS_OK
+ *   Returned  wheel      its number, -1 after RS_BAD_SPEED
+ *             variable   0 y, 1 roll, 2 drop (with a table: penetration), 3 yaw: of the wheel's place against its rail as in
+ *                        contact/contact_table.h; 4 ln(a/b); -1: its forces
+ *             value      of the variable
+ *             place      RS_PLACE_SIZE, the whole place
+ * rs_wheel_rail_outputs  of the last rs_wheel_rail_rows, which must have returned RS_OK
  *   Returned  wheel    2 n x RS_WHEEL_OUTPUTS, see below
  *             patch    2 n x RS_ZONES x RS_PATCH_OUTPUTS, in the place of its zone; zeros where a zone carries no load
  *
@@ -43,7 +47,7 @@
  *   TGAMMA N   |Fx xi| + |Fy eta| summed over the patches (energy per metre; without spin)
  *   PATCHES    number of patches that carry load
  * Of a patch (RS_PATCH_...): load N; xi, eta -, phi 1/m; Fx, Fy N, Mz N m on the wheel in the contact plane (x of
- *   the rolling direction, z into the rail); x, across, radius m, angle rad, a, b m as in contact_table.h.
+ *   the rolling direction, z into the rail); x, across, radius m, angle rad, a, b m as in contact/contact_table.h.
  */
 #ifndef RS_WHEEL_RAIL_H
 #define RS_WHEEL_RAIL_H

@@ -12,6 +12,7 @@ from importlib import import_module
 from types import ModuleType
 
 _MODULE_OF = {
+    "ConicalContact": "wheel_rail",
     "ContactPair": "contact_pair",
     "ContactTable": "contact_table",
     "LinearContact": "contact",
@@ -25,6 +26,7 @@ _MODULE_OF = {
     "Simulation": "simulation",
     "Vehicle": "vehicle",
     "ChannelWriter": "results",
+    "WheelRail": "wheel_rail",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",

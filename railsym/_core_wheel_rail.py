@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from railsym._core import CREEP_LAWS, _check, _doubles, _vector, ffi, lib
+from railsym._core_contact import Table
 from railsym.errors import ContactError
 
 PLACE = (("lateral shift", "m"), ("roll", "rad"), ("drop", "m"), ("yaw", "rad"))
@@ -29,19 +30,22 @@ class Shape:
         The shape; `keep` holds its memory.
     r0 : float
         m, height of the wheelset's centre over the top of rail at drop = 0.
-    ranges : tuple of pair of float
-        Least and largest lateral shift (m), roll (rad), drop (m) of the wheel's place.
+    half_spacing : float
+        m, lateral place of the tape circle from the wheelset's centre, and of the rail's head from the track's.
+    outside : callable
+        (number of the quantity that left its range, place (4)) -> what to say of it.
     keep : object
     """
 
     kind: int
     pointer: object
     r0: float
-    ranges: tuple
+    half_spacing: float
+    outside: object
     keep: object
 
 
-def cones(r0, zones, limits):
+def cones(r0, zones, limits, half_spacing=0.75):
     """Shape of cones on round rails.
 
     Parameters
@@ -56,7 +60,44 @@ def cones(r0, zones, limits):
     for cone, zone in zip(memory.cone, zones):
         for name, value in zone.items():
             setattr(cone, name, value)
-    return Shape(lib.RS_CONTACT_CONES, memory, r0, tuple((-value, value) for value in limits), memory)
+
+    def outside(number, place):
+        name, unit = PLACE[number]
+        return _beyond(name, place[number], unit, -limits[number], limits[number])
+
+    return Shape(lib.RS_CONTACT_CONES, memory, r0, half_spacing, outside, memory)
+
+
+def table(made):
+    """Shape of a contact table, a `railsym._core_contact.Table`."""
+    r0 = made.value("wheel_radius")
+
+    def outside(number, place):
+        if number == 2:
+            return (f"drop {place[2]:.4f} m presses it into its rail by more than the {made.value('deepest'):.2g} m of the contact table; "
+                    "is the wheelset falling, or its mass too large?")
+        name, unit = (("lateral shift at the contact", "m"), ("roll", "rad"))[number]
+        key = ("shift", "roll")[number]
+        start, step, nodes = (made.value(part) for part in (f"{key}_start", f"{key}_step", f"{key}s"))
+        value, low, high = place[1] if number else place[0] - r0 * place[1], start + step, start + (nodes - 2) * step
+        if low <= value <= high:
+            return f"at {name} {value:.4f} {unit} it meets its rail beyond an end of one of the profiles"
+        return _beyond(name, value, unit, low, high)
+
+    return Shape(lib.RS_CONTACT_TABLE, made.pointer, r0, made.value("spacing"), outside, made)
+
+
+def _beyond(name, value, unit, low, high):
+    return f"{name} {value:.4f} {unit} is outside the contact table [{low:.4f}, {high:.4f}] {unit}"
+
+
+def shape_of(contact, side):
+    """Shape of one wheel (side -1, 1) of a contact: a Table, or anything with ``wheel_shape(side)``."""
+    if isinstance(contact, Table):
+        return table(contact)
+    if not hasattr(contact, "wheel_shape"):
+        raise ContactError(f"contact is {type(contact).__name__}; wheel-rail forces need a contact table or a ConicalContact")
+    return contact.wheel_shape(side)
 
 
 class WheelRailCore:
@@ -108,20 +149,18 @@ class WheelRailCore:
 
     def explain(self, status, speed):
         """Raise the error that a status of rs_wheel_rail_rows stands for."""
-        wheel, variable, value = ffi.new("int *"), ffi.new("int *"), ffi.new("double *")
-        lib.rs_wheel_rail_failure(self.pointer, wheel, variable, value)
+        wheel, variable, value, place = ffi.new("int *"), ffi.new("int *"), ffi.new("double *"), np.empty(lib.RS_PLACE_SIZE)
+        lib.rs_wheel_rail_failure(self.pointer, wheel, variable, value, _doubles(place))
         number, value = variable[0], value[0]
         if status == lib.RS_BAD_SPEED:
             raise ContactError(f"speed is {speed!r} m/s; creepages are slips over the speed, so it must be positive and finite")
         where = self.names[wheel[0]]
-        if status == lib.RS_OUT_OF_TABLE and number < len(self._shapes[wheel[0]].ranges):
-            low, high = self._shapes[wheel[0]].ranges[number]
-            name, unit = PLACE[number]
-            raise ContactError(f"{where}: {name} {value:.4f} {unit} is outside the contact table [{low:.4f}, {high:.4f}] {unit}")
+        if status == lib.RS_OUT_OF_TABLE and number < len(PLACE):
+            raise ContactError(f"{where}: {self._shapes[wheel[0]].outside(number, place)}")
         if status == lib.RS_OUT_OF_TABLE:
             raise ContactError(f"{where}: a contact ellipse with a/b = {np.exp(value):.4g} is outside the creep coefficients' range, 0.001 to 1000")
-        what = f"its {PLACE[number][0]} is {value}" if 0 <= number < len(PLACE) else "its forces are not finite"
         if status == lib.RS_NOT_FINITE:
+            what = f"its {PLACE[number][0]} against the rail is {value}" if 0 <= number < len(PLACE) else "its forces are not finite"
             raise ContactError(f"{where}: {what}; look at the state of its wheelset")
         _check(status, where)
 

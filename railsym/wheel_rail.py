@@ -20,9 +20,8 @@ from railsym.errors import ContactError
 from railsym.hertz import contact_modulus, hertz
 from railsym.kalker import kalker_coefficients
 
-DECADES, NODES_A_DECADE = 3, 32  # of a/b on both sides of 1: cubics between err by 1e-7
+DECADES, NODES_A_DECADE = 3, 64  # of a/b on both sides of 1: cubics between err by 1e-5, the table by 5e-3
 CONTACT_DAMPING = 1.0  # s/m, assumed: 3 % of critical for a wheelset of 1.8 t on Hertzian contact at 66 kN a wheel
-RAIL_SPACING = 1.5  # m, distance of the rail heads of standard gauge (EN 13848-1)
 
 
 @lru_cache(maxsize=32)
@@ -118,7 +117,7 @@ class ConicalContact:
         """Shape of one wheel for the C library; both sides are alike."""
         from railsym._core_wheel_rail import cones
 
-        return cones(self.wheel_radius, [self._zone(zone) for zone in self.zones], self.limits)
+        return cones(self.wheel_radius, [self._zone(zone) for zone in self.zones], self.limits, self.zones[0].half_spacing)
 
     def _zone(self, zone):
         angle = np.arctan(zone.slope)
@@ -148,7 +147,7 @@ class WheelOutputs:
     creepage, force : ndarray, shape (wheels, zones, 3)
         xi -, eta -, phi 1/m; Fx N, Fy N, Mz N m on the wheel, in the contact plane.
     x, across, radius, angle, a, b : ndarray, shape (wheels, zones)
-        Place of the contact m, its plane rad and semi-axes m; axes of csrc/contact_table.h.
+        Place of the contact m, its plane rad and semi-axes m; axes of csrc/contact/contact_table.h.
     """
 
     Y: np.ndarray
@@ -205,8 +204,8 @@ class WheelRail:
         Of both bodies; the vehicle file's, else steel.
     reduction : pair of float
         Polach's factors kA, kS.
-    rail_spacing : float
-        m, distance of the rail heads; their cross level turns both rails by itself over this.
+    rail_spacing : float, optional
+        m, distance of the rail heads; their cross level turns both rails by itself over this. Default: that of the contact's tape circles.
     wheel_loads : ndarray, shape (wheels,), optional
         N: every wheel sinks into its rail by what carries its load, so that the coordinates at zero are in equilibrium.
         Default: the static wheel loads of a Vehicle; none of a list of WheelsetPlace, which then does not sink.
@@ -218,16 +217,17 @@ class WheelRail:
     """
 
     def __init__(self, vehicle, contact, *, law="fastsim", grid=(20, 20), friction=None, kalker_weight=None, damping=CONTACT_DAMPING,
-                 material=None, reduction=(1.0, 1.0), rail_spacing=RAIL_SPACING, wheel_loads=None):
+                 material=None, reduction=(1.0, 1.0), rail_spacing=None, wheel_loads=None):
         from railsym import _core
+        from railsym._core_wheel_rail import shape_of
 
         self.wheelsets, given, loads = _places(vehicle)
         self._law, self._grid, self._reduction = _known(law, _core.CREEP_LAWS), _checked_grid(grid), _checked_reduction(reduction)
         self._material = material or _material(given)
         left, right = contact if isinstance(contact, (tuple, list)) else (contact, contact)
-        shapes = (left.wheel_shape(-1), right.wheel_shape(1))
+        shapes = (shape_of(left, -1), shape_of(right, 1))
         wheels = len(self.wheelsets) * 2
-        self._spacing = _positive(rail_spacing, "rail_spacing", "m")
+        self._spacing = _positive(shapes[0].half_spacing + shapes[1].half_spacing if rail_spacing is None else rail_spacing, "rail_spacing", "m")
         self._wheel_values = {
             "friction": _each(given.get("friction", 0.3) if friction is None else friction, wheels, "friction", "-"),
             "weight": _each(given.get("kalker_weight", 1.0) if kalker_weight is None else kalker_weight, wheels, "kalker_weight", "-"),
@@ -316,17 +316,18 @@ class WheelRail:
             found = self.outputs()
             return float(np.sum(found.load[wheel] * np.cos(found.angle[wheel]))) - loads[wheel]
 
-        def bracket(wheel):
+        def sink(wheel):
             low, high = 0.0, 1e-5
-            while lack(low, wheel) > 0.0:
-                low -= 1e-5 if low == 0.0 else -low
-            while lack(high, wheel) < 0.0:
-                high *= 2.0
-            return low, high
+            try:
+                while lack(low, wheel) > 0.0:
+                    low = 2.0 * low - 1e-5
+                while lack(high, wheel) < 0.0:
+                    high *= 2.0
+            except ContactError as error:
+                raise ContactError(f"the contact cannot carry the static load of {self._core.names[wheel]}, {loads[wheel]:.6g} N: {error}") from None
+            return brentq(lack, low, high, args=(wheel,), xtol=1e-15, rtol=1e-14)
 
-        if not np.all(loads >= 0.0):
-            raise ContactError(f"wheel_loads (N) must not be negative, got {loads}")
-        return np.array([brentq(lack, *bracket(k), args=(k,), xtol=1e-15, rtol=1e-14) for k in range(len(loads))])
+        return np.array([sink(wheel) for wheel in range(len(loads))])
 
 
 def _places(vehicle):

@@ -30,7 +30,7 @@ typedef struct {
 	double turn_rate;     /* of the rail about e1, rad/s */
 } rail_head;
 
-static void axle_axes(const double *q, rs_axle_state *axle)
+RS_INLINE void axle_axes(const double *q, rs_axle_state *axle)
 {
 	double sy = sin(q[YAW]), cy = cos(q[YAW]), sr = sin(q[ROLL]), cr = cos(q[ROLL]);
 	double forward[3] = {cy, sy, 0.0}, along[3] = {-sy * cr, cy * cr, sr};
@@ -39,7 +39,7 @@ static void axle_axes(const double *q, rs_axle_state *axle)
 }
 
 /* Velocities that both wheels share; close and turn without the rail's part. */
-static void axle_velocities(const rs_wheelset *set, const double *q, const double *u, double V, const double *w,
+RS_INLINE void axle_velocities(const rs_wheelset *set, const double *q, const double *u, double V, const double *w,
                             const rs_axle_state *axle, rs_motion *m)
 {
 	double place[3] = {set->offset[0] + q[X], set->offset[1] + q[Y], set->offset[2] + q[Z]};
@@ -57,7 +57,7 @@ static void axle_velocities(const rs_wheelset *set, const double *q, const doubl
 }
 
 /* Tangents of axle_axes and axle_velocities. */
-static void axle_tangents(const double *u, const double *w, const double *seed, rs_axle_state *axle, rs_motion *to)
+RS_INLINE void axle_tangents(const double *u, const double *w, const double *seed, rs_axle_state *axle, rs_motion *to)
 {
 	double cq = seed[0], cu = seed[1], yawed[3], turned[3], rolled[3];
 	memset(to, 0, RS_COLUMNS * sizeof *to);
@@ -85,7 +85,7 @@ static void axle_tangents(const double *u, const double *w, const double *seed, 
 	}
 }
 
-static void rail_axes(const rs_wheelset *set, const double *q, double V, const double *rail, rs_wheel_state *wheel,
+RS_INLINE void rail_axes(const rs_wheelset *set, const double *q, double V, const double *rail, rs_wheel_state *wheel,
                       rail_head *head)
 {
 	const double *own = rail + (wheel->side > 0.0 ? 4 : 0);
@@ -106,7 +106,7 @@ static void rail_axes(const rs_wheelset *set, const double *q, double V, const d
 	head->D[2] = set->offset[2] + q[Z] - own[1];
 }
 
-static void place_on_rail(const rs_wheelset *set, const rail_head *head, rs_wheel_state *wheel)
+RS_INLINE void place_on_rail(const rs_wheelset *set, const rail_head *head, rs_wheel_state *wheel)
 {
 	const rs_wheel *given = &set->wheel[wheel->side > 0.0];
 	const double *axle = wheel->at.a;
@@ -117,7 +117,7 @@ static void place_on_rail(const rs_wheelset *set, const rail_head *head, rs_whee
 }
 
 /* The rail's own motion under the wheel, and the wheel's axes. */
-static double move_against_rail(double V, const double *own, const rail_head *head, rs_wheel_state *wheel)
+RS_INLINE double move_against_rail(double V, const double *own, const rail_head *head, rs_wheel_state *wheel)
 {
 	rs_motion *m = &wheel->at;
 	double rail_turn[3], swept[3], out[3];
@@ -139,7 +139,7 @@ static double move_against_rail(double V, const double *own, const rail_head *he
 }
 
 /* length: |axle x e3|, the cosine of the roll against the rail. */
-static void wheel_tangents(const rail_head *head, double cq, double length, rs_wheel_state *wheel)
+RS_INLINE void wheel_tangents(const rail_head *head, double cq, double length, rs_wheel_state *wheel)
 {
 	const rs_motion *m = &wheel->at;
 	double rail_turn[3], a1 = DOT(m->a, head->e1), a2 = DOT(m->a, wheel->e2);
@@ -167,8 +167,8 @@ static void wheel_tangents(const rail_head *head, double cq, double length, rs_w
 	}
 }
 
-void rs_axle_motion(const rs_wheelset *set, const double *q, const double *u, double V, const double *w,
-                    const double *rail, const double *seed, rs_axle_state *axle)
+RS_CLONES void rs_axle_motion(const rs_wheelset *set, const double *q, const double *u, double V, const double *w,
+                                        const double *rail, const double *seed, rs_axle_state *axle)
 {
 	rs_motion shared, to[RS_COLUMNS];
 	memset(&shared, 0, sizeof shared);

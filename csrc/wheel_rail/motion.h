@@ -11,7 +11,6 @@
 #ifndef RS_MOTION_H
 #define RS_MOTION_H
 
-#include "../contact/contact_table.h"
 #include "../creep.h"
 #include "../wheel_rail.h"
 
@@ -42,6 +41,7 @@ typedef struct {
 	rs_patch patch[RS_ZONES];
 	double log_ratio[RS_ZONES];  /* ln(a/b) */
 	double force[3], moment[3];  /* on the wheelset, about its centre */
+	double force_to[RS_COLUMNS][3], moment_to[RS_COLUMNS][3];
 	double tgamma;
 	double found[RS_ZONES][RS_PATCH_OUTPUTS];  /* in the order of patch */
 } rs_wheel_state;
@@ -50,16 +50,13 @@ typedef struct {
 typedef struct {
 	double forward[3], axle[3];
 	double forward_to[RS_COLUMNS][3], axle_to[RS_COLUMNS][3];
-	double force[3], moment[3];
-	double force_to[RS_COLUMNS][3], moment_to[RS_COLUMNS][3];
 	rs_wheel_state wheel[2];
 } rs_axle_state;
 
-/* Eight patches on their way from wheel to axle. */
+/* Patches of eight at most. */
 typedef struct {
 	int count;
 	rs_wheel_state *wheel[RS_LANES];
-	rs_axle_state *axle[RS_LANES];
 	const rs_wheel *given[RS_LANES];
 	int patch[RS_LANES];
 } rs_batch;
@@ -89,14 +86,13 @@ struct rs_wheel_rail {
 
 typedef int rs_lookup(const rs_contact_table *shape, const double *place, rs_patch *patch, int *count, int *beyond);
 
-rs_lookup *rs_lookup_of(int kind);
 int rs_contact_cones_lookup(const rs_contact_table *shape, const double *place, rs_patch *patch, int *count, int *beyond);
 
 /* Places and motions of both wheels of one wheelset; seed NULL: no tangents. rail 8 numbers, q u w those of the wheelset. */
 void rs_axle_motion(const rs_wheelset *set, const double *q, const double *u, double V, const double *w,
                     const double *rail, const double *seed, rs_axle_state *axle);
 
-/* Adds forces, moments and, with tangents, theirs to axle and wheel of each patch of the batch. */
+/* Adds forces, moments and, with tangents, theirs to the wheel of each patch of the batch. */
 void rs_patch_forces(const rs_wheel_rail *wr, double V, int tangents, const rs_batch *batch);
 
 /* Creep forces of eight patches. */

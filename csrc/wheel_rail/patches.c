@@ -56,6 +56,15 @@ static void spread(const double *const *from, int n, rs_lane *to)
 		spread(rows_, n, (rs_lane *)(to)); \
 	} while (0)
 
+/* Seven rows of a value and its slopes; columns 1: the values only. */
+static void spread_patches(const double *const *from, int columns, inputs *to)
+{
+	for (int row = 0; row < RS_PATCH_ROWS; row++)
+		for (int k = 0; k < columns; k++)
+			RS_EACH(l)
+				RS_AT(to->patch[row][k], l) = from[l][5 * row + k];
+}
+
 /* Lanes that are not used repeat the first one. */
 static void gather(const rs_wheel_rail *wr, const rs_batch *batch, int tangents, inputs *to)
 {
@@ -78,7 +87,7 @@ static void gather(const rs_wheel_rail *wr, const rs_batch *batch, int tangents,
 			RS_AT(to->adhesion.c_to[j], l) = slope[j];
 		}
 	}
-	spread(patch, 5 * RS_PATCH_ROWS, to->patch[0]);
+	spread_patches(patch, tangents ? 5 : 1, to);
 	SPREAD(side, 1, &to->side);
 	SPREAD(e2, 3, to->e2);
 	SPREAD(e3, 3, to->e3);
@@ -248,12 +257,12 @@ void rs_patch_forces(const rs_wheel_rail *wr, double V, int tangents, const rs_b
 	gather(wr, batch, tangents, &x);
 	contact(wr, V, tangents, &x, &y);
 	for (int l = 0; l < batch->count; l++) {
-		rs_axle_state *axle = batch->axle[l];
-		report(&x, &y, l, batch->patch[l], batch->wheel[l]);
+		rs_wheel_state *wheel = batch->wheel[l];
+		report(&x, &y, l, batch->patch[l], wheel);
 		for (int k = 0; tangents && k < RS_COLUMNS; k++)
 			EACH_AXIS(i) {
-				axle->force_to[k][i] += RS_OF(y.force_to[k][i], l);
-				axle->moment_to[k][i] += RS_OF(y.moment_to[k][i], l);
+				wheel->force_to[k][i] += RS_OF(y.force_to[k][i], l);
+				wheel->moment_to[k][i] += RS_OF(y.moment_to[k][i], l);
 			}
 	}
 }

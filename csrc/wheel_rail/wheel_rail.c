@@ -10,15 +10,13 @@
 #include "motion.h"
 #include "vectors.h"
 
-rs_lookup *rs_lookup_of(int kind)
+static rs_lookup *lookup_of(int kind)
 {
 	switch (kind) {
 	case RS_CONTACT_CONES:
 		return rs_contact_cones_lookup;
-#ifdef RS_HAVE_CONTACT_TABLE
 	case RS_CONTACT_TABLE:
 		return rs_contact_lookup;
-#endif
 	default:
 		return NULL;
 	}
@@ -29,7 +27,7 @@ static int fit(int wheelsets, const rs_wheelset *wheelset, const rs_creep_settin
 	if (wheelsets <= 0 || creep->strips < 1 || creep->cells < 1 || creep->pieces < 1 || !rs_creep_law_at(creep->law))
 		return 0;
 	for (int k = 0; k < 2 * wheelsets; k++)
-		if (!rs_lookup_of(wheelset[k / 2].wheel[k % 2].kind) || !wheelset[k / 2].wheel[k % 2].shape)
+		if (!lookup_of(wheelset[k / 2].wheel[k % 2].kind) || !wheelset[k / 2].wheel[k % 2].shape)
 			return 0;
 	return 1;
 }
@@ -86,7 +84,7 @@ static int look_up(rs_wheel_rail *wr, int number)
 	for (int k = 0; k < RS_PLACE_SIZE; k++)
 		if (!isfinite(wheel->place[k]))
 			return fail(wr, RS_NOT_FINITE, number, k, wheel->place[k]);
-	int status = rs_lookup_of(given->kind)(given->shape, wheel->place, wheel->patch, &wheel->count, &beyond);
+	int status = lookup_of(given->kind)(given->shape, wheel->place, wheel->patch, &wheel->count, &beyond);
 	if (status != RS_OK)
 		return fail(wr, status, number, beyond, wheel->place[beyond]);
 	for (int k = 0; k < wheel->count; k++) {
@@ -100,12 +98,12 @@ static int look_up(rs_wheel_rail *wr, int number)
 
 static void clear(rs_axle_state *axle)
 {
-	memset(axle->force_to, 0, sizeof axle->force_to);
-	memset(axle->moment_to, 0, sizeof axle->moment_to);
 	for (int k = 0; k < 2; k++) {
 		rs_wheel_state *wheel = &axle->wheel[k];
 		memset(wheel->force, 0, sizeof wheel->force);
 		memset(wheel->moment, 0, sizeof wheel->moment);
+		memset(wheel->force_to, 0, sizeof wheel->force_to);
+		memset(wheel->moment_to, 0, sizeof wheel->moment_to);
 		wheel->tgamma = 0.0;
 	}
 }
@@ -116,11 +114,9 @@ static void all_patches(rs_wheel_rail *wr, double V, int tangents)
 	rs_batch batch;
 	batch.count = 0;
 	for (int number = 0; number < 2 * wr->wheelsets; number++) {
-		rs_axle_state *axle = &wr->axle[number / 2];
-		rs_wheel_state *wheel = &axle->wheel[number % 2];
+		rs_wheel_state *wheel = &wr->axle[number / 2].wheel[number % 2];
 		for (int k = 0; k < wheel->count; k++) {
 			batch.wheel[batch.count] = wheel;
-			batch.axle[batch.count] = axle;
 			batch.given[batch.count] = &wr->wheelset[number / 2].wheel[number % 2];
 			batch.patch[batch.count++] = k;
 			if (batch.count < RS_LANES)
@@ -148,27 +144,31 @@ static int rows_are_finite(rs_wheel_rail *wr)
 	return 1;
 }
 
-static void axle_rows(rs_axle_state *axle, double *rows)
+/* Left and right in one sum each, so that mirrored motion has mirrored rows to the last bit. */
+static void axle_rows(const rs_axle_state *axle, double *moment, double *rows)
 {
+	const rs_wheel_state *left = &axle->wheel[0], *right = &axle->wheel[1];
 	EACH_AXIS(i) {
-		axle->force[i] = axle->wheel[0].force[i] + axle->wheel[1].force[i];
-		axle->moment[i] = axle->wheel[0].moment[i] + axle->wheel[1].moment[i];
-		rows[i] = -axle->force[i];
+		moment[i] = left->moment[i] + right->moment[i];
+		rows[i] = -(left->force[i] + right->force[i]);
 	}
-	rows[3] = -axle->moment[2];
-	rows[4] = -DOT(axle->forward, axle->moment);
-	rows[5] = -DOT(axle->axle, axle->moment);
+	rows[3] = -moment[2];
+	rows[4] = -DOT(axle->forward, moment);
+	rows[5] = -DOT(axle->axle, moment);
 }
 
-static void axle_block(const rs_axle_state *axle, double *block)
+static void axle_block(const rs_axle_state *axle, const double *moment, double *block)
 {
+	const rs_wheel_state *left = &axle->wheel[0], *right = &axle->wheel[1];
 	for (int k = 0; k < RS_COLUMNS; k++) {
-		const double *force = axle->force_to[k], *moment = axle->moment_to[k];
-		EACH_AXIS(i)
-			block[RS_COLUMNS * i + k] = -force[i];
-		block[RS_COLUMNS * 3 + k] = -moment[2];
-		block[RS_COLUMNS * 4 + k] = -DOT(axle->forward, moment) - DOT(axle->forward_to[k], axle->moment);
-		block[RS_COLUMNS * 5 + k] = -DOT(axle->axle, moment) - DOT(axle->axle_to[k], axle->moment);
+		double to[3];
+		EACH_AXIS(i) {
+			to[i] = left->moment_to[k][i] + right->moment_to[k][i];
+			block[RS_COLUMNS * i + k] = -(left->force_to[k][i] + right->force_to[k][i]);
+		}
+		block[RS_COLUMNS * 3 + k] = -to[2];
+		block[RS_COLUMNS * 4 + k] = -DOT(axle->forward, to) - DOT(axle->forward_to[k], moment);
+		block[RS_COLUMNS * 5 + k] = -DOT(axle->axle, to) - DOT(axle->axle_to[k], moment);
 	}
 }
 
@@ -193,18 +193,21 @@ int rs_wheel_rail_rows(rs_wheel_rail *wr, const double *q, const double *u, doub
 	if (!rows_are_finite(wr))
 		return RS_NOT_FINITE;
 	for (int k = 0; k < wr->wheelsets; k++) {
-		axle_rows(&wr->axle[k], rows + 6 * k);
+		double moment[3];
+		axle_rows(&wr->axle[k], moment, rows + 6 * k);
 		if (blocks)
-			axle_block(&wr->axle[k], blocks + 36 * k);
+			axle_block(&wr->axle[k], moment, blocks + 36 * k);
 	}
 	return RS_OK;
 }
 
-void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, double *value)
+void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, double *value, double *place)
 {
 	*wheel = wr->failed_wheel;
 	*variable = wr->failed_variable;
 	*value = wr->failed_value;
+	for (int k = 0; k < RS_PLACE_SIZE; k++)
+		place[k] = wr->failed_wheel < 0 ? 0.0 : wr->axle[wr->failed_wheel / 2].wheel[wr->failed_wheel % 2].place[k];
 }
 
 void rs_wheel_rail_outputs(const rs_wheel_rail *wr, double *wheel, double *patch)
