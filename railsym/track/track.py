@@ -157,6 +157,12 @@ class Track:
         """The same track with one switch more: a `Switch`, or its start, length, amplitude, shape, rails, crossing_..."""
         return replace(self, switches=(*self.switches, switch or Switch(**options)))
 
+    def mirrored(self):
+        """The same track with left and right exchanged."""
+        from railsym.track.mirror import mirrored
+
+        return mirrored(self)
+
     # --- what it is ----------------------------------------------------------------------------------------------------
 
     @cached_property
