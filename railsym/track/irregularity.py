@@ -243,7 +243,8 @@ def _check_place(what):
 def _faded_layer(start, step, rails, end, fade_in, fade_out):
     if fade_in + fade_out > end - start:
         raise TrackError(f"irregularity from s = {start:.6g} m to {end:.6g} m is shorter than its fading, {fade_in + fade_out:g} m; make the fading shorter")
-    s = start + step * np.arange(len(rails))
-    rails = rails * window(s, start, end, fade_in, fade_out)[:, None]
     quiet = np.zeros((REST, 4))
-    return spline_layer(start - REST * step, step, np.concatenate([quiet, rails, quiet if fade_out else quiet[:0]]))
+    # beyond the end of the track a node more, so that the end lies inside the spline
+    tail = quiet if fade_out else 2.0 * rails[-1:] - rails[-2:-1]
+    rails = rails * window(start + step * np.arange(len(rails)), start, end, fade_in, fade_out)[:, None]
+    return spline_layer(start - REST * step, step, np.concatenate([quiet, rails, tail]), after=tail[-1])
