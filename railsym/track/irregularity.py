@@ -55,6 +55,7 @@ class RandomIrregularity:
         if isinstance(self.seed, bool) or not isinstance(self.seed, (int, np.integer)) or self.seed < 0:
             raise TrackError(f"seed = {self.seed!r}: a whole number from 0 on is needed, so that the track can be made again")
         object.__setattr__(self, "seed", int(self.seed))
+        load_spectrum(self.spectrum)
         _check_place(self)
         object.__setattr__(self, "scale", number(self.scale, "irregularity: scale", "-"))
         short, long = self.band()
