@@ -77,10 +77,13 @@ def test_clothoid_ends_where_the_fresnel_integrals_say():
     assert np.allclose(track.frame(s).attitude[:, 1, 0], np.sin(s**2 / (2 * radius * length)), atol=1e-15, rtol=0)
 
 
-def test_a_full_circle_closes():
-    track = Track([Curve(250, 2 * np.pi * 250, direction="left")])
-    assert np.abs(track.frame(track.length).place).max() < 1e-11 and np.abs(track.frame(track.length).attitude - np.eye(3)).max() < 1e-13
-    assert track.frame(track.length / 2).place[1] == pytest.approx(-500.0, abs=1e-11)      # a curve to the left: y < 0
+@pytest.mark.parametrize("radius", [25.0, 250.0])
+def test_a_full_circle_closes(radius):
+    track = Track([Curve(radius, 2 * np.pi * radius, direction="left")])
+    assert np.abs(track.frame(track.length).place).max() < 1e-12 and np.abs(track.frame(track.length).attitude - np.eye(3)).max() < 1e-14
+    s = np.linspace(0.0, track.length, 500)
+    from_centre = track.frame(s).place[:, :2] + [0.0, radius]      # a curve to the left: y < 0
+    assert np.abs(np.hypot(*from_centre.T) - radius).max() < 1e-12
 
 
 @pytest.mark.parametrize("kind", KINDS)
