@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Track files: what is written is read again to the last bit; what is wrong is named. The drawing shows what the track is."""
 
+import pickle
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -76,6 +78,12 @@ def test_what_is_written_is_read_again(track, tmp_path):
     for name, value in vars(track.rails(s)).items():
         assert (getattr(again.rails(s), name) == value).all(), name
     assert (again.kinks == track.kinks).all()
+
+
+def test_a_track_goes_to_other_processes():
+    track = Track.straight(100).with_irregularity("erri_b176_low", seed=1)
+    again = pickle.loads(pickle.dumps(track))
+    assert (again.rails([30.0, 70.0]).left_y == track.rails([30.0, 70.0]).left_y).all() and again.to_toml() == track.to_toml()
 
 
 def test_a_track_file_says_what_it_says(tmp_path):

@@ -71,6 +71,10 @@ class Track:
             raise TrackError("measured geometry holds its gradient: vertical sections do not go with it")
         self.core      # what does not fit is said now, not in a run
 
+    def __getstate__(self):
+        """What a copy in another process needs; C memory is made again there."""
+        return {name: value for name, value in vars(self).items() if name not in ("core", "alignment")}
+
     # --- ways to make one ----------------------------------------------------------------------------------------------
 
     @classmethod
