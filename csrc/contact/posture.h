@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A wheel held over its rail at one shift and roll, while a contact table is built. */
+#ifndef RS_POSTURE_H
+#define RS_POSTURE_H
+
+#include "contact_table.h"
+#include "strips.h"
+
+typedef struct {
+	const rs_surfaces *from;
+	double y, drop;                /* m */
+	double sine, cosine;           /* of the roll */
+	double touch_across, touch_slope; /* where the last zone closed touches: place on the wheel, its slope */
+	double *across, *gap, *slope;  /* of each rail point: place Y' on the wheel, gap, slope r' of the wheel */
+} rs_posture;
+
+typedef struct {
+	double low, high;              /* m, places on the wheel */
+} rs_zone;
+
+/* surfaces.c */
+void rs_rail_at(const rs_surfaces *from, double place, double *Y, double *Z);
+double rs_gap_at(const rs_posture *p, double Y, double Z, double *across, double *slope);
+void rs_gaps(rs_posture *p);
+double rs_wheel_radius(const rs_surfaces *from, double across);
+
+/* closure.c: moves the posture to the drop at which the zone touches; returns the cosine of the slope there,
+ * negative where that is at the end of a profile, 0 where none of the zone is over the rail. */
+double rs_close_zone(rs_posture *p, rs_zone zone);
+
+/* patch.c: fields of a zone lowered by depth (m, vertical) from where it touches; normal (m): the same along the normal. */
+int rs_patch_fields(const rs_posture *p, const rs_influence *influence, double modulus, rs_zone zone, double depth, double normal,
+                    double *field);
+
+#endif
