@@ -11,6 +11,7 @@ import railsym as rs
 from railsym.errors import TrackError
 from railsym.track import (Curve, Gradient, MeasuredGeometry, MeasuredIrregularity, Straight, Switch, Track, Transition, VerticalCurve,
                            load_track, read_geometry)
+from railsym.track import tracks as shipped
 
 EXAMPLE = """\
 [track]
@@ -57,7 +58,8 @@ def written(tmp_path, text):
 
 def tracks():
     s = np.arange(0.0, 300.1, 0.7)
-    plain = Track([Straight(50), Transition(40, "cosine", "bloss"), Curve(700, 100, 0.05), Transition(60, end_radius=np.inf, end_cant=0.01), Straight(60, cant=0.01)],
+    sections = [Straight(50), Transition(40, "cosine", "bloss"), Curve(700, 100, 0.05), Transition(60, end_radius=np.inf, end_cant=0.01)]
+    plain = Track([*sections, Straight(60, cant=0.01)],
                   vertical=[Gradient(100, 0.003), VerticalCurve(length=70), Gradient(140, -0.001)], rounding=0.5, name='a "b" \\ \u00e4')
     yield plain
     yield plain.with_irregularity("erri_b176_high", seed=7, wavelengths=(2.5, 80), start=10, length=200, fade=12.5, scale=0.3).mirrored()
@@ -122,6 +124,19 @@ def test_what_is_wrong_in_a_file_is_named(tmp_path, old, new, message):
     assert old in EXAMPLE
     with pytest.raises(TrackError, match=message):
         load_track(written(tmp_path, EXAMPLE.replace(old, new)))
+
+
+def test_tracks_that_come_along():
+    assert shipped() == ("s_curve_500", "straight_erri_high", "straight_erri_low")
+    for name in shipped():
+        track = rs.load_track(name)
+        assert track.name == name and len(track.jumps) == 0
+    # what its head says: 1.05 m/s^2 left at 105 km/h
+    track = rs.load_track("s_curve_500")
+    frame, speed = track.frame(300.0), 105 / 3.6
+    assert speed**2 * frame.turning[2] - frame.gravity(9.81)[1] == pytest.approx(1.05, abs=0.01)
+    with pytest.raises(TrackError, match="nearest: 's_curve_500'"):
+        rs.load_track("s_curve_50")
 
 
 def test_a_missing_file_is_named(tmp_path):

@@ -24,9 +24,10 @@ FORMS = {
 
 def hilly(kind="bloss", **options):
     """Every kind of section at once."""
+    curved = 6000 * (Gradient(1, 0.01).sine - Gradient(1, -0.015).sine)
     return Track([Straight(80), Transition(60, kind), Curve(400, 150, cant=0.12), Transition(90, kind, end_radius=600, end_direction="left", end_cant=0.05),
                   Curve(600, 120, cant=0.05, direction="left"), Transition(50, kind, "cosine"), Straight(100)],
-                 vertical=[Gradient(120, 0.01), VerticalCurve(radius=6000), Gradient(650 - 120 - 6000 * (Gradient(1, 0.01).sine - Gradient(1, -0.015).sine), -0.015)],
+                 vertical=[Gradient(120, 0.01), VerticalCurve(radius=6000), Gradient(650 - 120 - curved, -0.015)],
                  **options)
 
 
@@ -281,7 +282,11 @@ def test_what_does_not_fit_is_said(make, message):
         make()
 
 
-@pytest.mark.parametrize("s, message", [(612.5, r"s = 612.5 m lies 112.5 m beyond its end: the track is 500 m long"), (-120.0, "20 m before its start"), (np.nan, "no place")])
+@pytest.mark.parametrize("s, message", [
+    (612.5, r"s = 612.5 m lies 112.5 m beyond its end: the track is 500 m long"),
+    (-120.0, "20 m before its start"),
+    (np.nan, "no place"),
+])
 def test_a_place_off_the_track_is_named(s, message):
     track = rs.Track.straight(500)
     for ask in (track.frame, track.rails, track.curvature, lambda at: track.relative_pose(10.0, at), lambda at: track.check_run(0.0, at)):
