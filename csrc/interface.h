@@ -118,12 +118,13 @@ typedef struct {
 } rs_patch;
 
 int rs_rigid_contact(const rs_surfaces *from, int n, const double *place, double *contact);
-int rs_contact_table_build(const rs_surfaces *from, const double *axes, int levels, int zones, const double *cuts,
-                           double modulus, double deepest, rs_contact_table **made);
-int rs_contact_table_of_arrays(const double *shape, const double *closure, const double *field,
-                               rs_contact_table **made);
-void rs_contact_table_shape(const rs_contact_table *table, double *shape);
-void rs_contact_table_arrays(const rs_contact_table *table, double *closure, double *field);
+int rs_contact_table_check(const double *shape);
+int rs_contact_table_build(const rs_surfaces *from, const double *shape, const double *cuts, const int *parts,
+                           double modulus, rs_contact_table **made, int *failures);
+int rs_contact_table_of_arrays(const double *shape, const double *axes, const double *const *closure,
+                               const double *const *field, rs_contact_table **made);
+void rs_contact_table_shape(const rs_contact_table *table, double *shape, double *axes);
+void rs_contact_table_arrays(const rs_contact_table *table, int zone, double *closure, double *field);
 void rs_contact_table_free(rs_contact_table *table);
 int rs_contact_lookup(const rs_contact_table *table, const double *place, rs_patch *patch, int *count, int *beyond);
 int rs_contact_lookup_many(const rs_contact_table *table, int n, const double *place, rs_patch *patch, int *count,

@@ -54,43 +54,62 @@ class Surfaces:
 
 
 class Table:
-    """One immutable contact table in C memory."""
+    """One immutable contact table in C memory.
 
-    def __init__(self, pointer):
-        self.pointer = ffi.gc(pointer, lib.rs_contact_table_free)
-        shape = np.empty(len(SHAPE))
-        lib.rs_contact_table_shape(self.pointer, _doubles(shape))
-        self.shape = shape
+    Attributes
+    ----------
+    shape : ndarray (11,)
+        `SHAPE`.
+    axes : ndarray (zones, 3)
+        Start, step and number of the shift nodes of each zone.
+    failures : int
+        Nodes that could not be computed.
+    """
+
+    def __init__(self, pointer, failures=0):
+        self.pointer, self.failures = ffi.gc(pointer, lib.rs_contact_table_free), failures
+        self.shape, axes = np.empty(len(SHAPE)), np.zeros((ZONES, 3))
+        lib.rs_contact_table_shape(self.pointer, _doubles(self.shape), _doubles(axes))
+        self.axes = axes[:int(self.value("zones"))].copy()
 
     @classmethod
-    def built(cls, surfaces, axes, levels, cuts, modulus, deepest):
-        """From surfaces; axes: start, step, nodes of the shift and of the roll; cuts: places on the wheel (m), from + to -infinity."""
-        made = ffi.new("rs_contact_table **")
-        _check(lib.rs_contact_table_build(surfaces.pointer, _doubles(_vector(axes, 6, "axes")), levels, len(cuts) - 1,
-                                          _doubles(np.ascontiguousarray(cuts, dtype=float)), modulus, deepest, made), "building a contact table")
-        return cls(made[0])
+    def built(cls, surfaces, shape, cuts, parts, modulus):
+        """From surfaces; cuts (zones + 1,): places on the wheel (m), from + to -infinity; parts (zones,): of each interval of the shift."""
+        made, failures = ffi.new("rs_contact_table **"), ffi.new("int *")
+        _check(lib.rs_contact_table_build(surfaces.pointer, _doubles(_vector(shape, len(SHAPE), "shape")), _doubles(np.ascontiguousarray(cuts, dtype=float)),
+                                          ffi.new("int[]", list(parts)), modulus, made, failures), "building a contact table")
+        return cls(made[0], failures[0])
 
     @classmethod
-    def of_arrays(cls, shape, closure, field):
-        """From what `arrays` returns."""
-        shape = _vector(shape, len(SHAPE), "shape of a contact table")
-        sizes = [int(shape[SHAPE.index(name)]) for name in ("shifts", "rolls", "levels", "zones")]
-        nodes = sizes[0] * sizes[1] * FIELDS
+    def of_arrays(cls, shape, axes, closures, fields):
+        """From `shape`, `axes` and one array of each a zone, as `arrays` returns them."""
+        shape, axes = _vector(shape, len(SHAPE), "shape of a contact table"), np.ascontiguousarray(axes, dtype=float).reshape(-1, 3)
+        rolls, levels, zones = (int(shape[SHAPE.index(name)]) for name in ("rolls", "levels", "zones"))
+        if not len(axes) == len(closures) == len(fields) == zones:
+            raise ContactError(f"a contact table of {zones} zones needs as many axes, closures and fields; got {len(axes)}, {len(closures)}, {len(fields)}")
+        keep = [(_vector(c, int(axis[2]) * rolls * 2, "closure"), _vector(f, int(axis[2]) * rolls * levels * FIELDS, "field"))
+                for axis, c, f in zip(axes, closures, fields)]
+        pointers = [ffi.new("double *[]", [ffi.cast("double *", ffi.from_buffer(pair[k])) for pair in keep]) for k in range(2)]
         made = ffi.new("rs_contact_table **")
-        _check(lib.rs_contact_table_of_arrays(_doubles(shape), _doubles(_vector(closure, nodes, "closure")),
-                                              _doubles(_vector(field, nodes * sizes[2] * sizes[3], "field")), made), "contact table from arrays")
+        _check(lib.rs_contact_table_of_arrays(_doubles(shape), _doubles(axes), *pointers, made), "contact table from arrays")
         return cls(made[0])
 
     def value(self, name):
         """One number of the shape."""
         return self.shape[SHAPE.index(name)]
 
-    def arrays(self):
-        """closure (shifts, rolls, fields) and field (zones, shifts, rolls, levels, fields)."""
-        shifts, rolls, levels, zones = (int(self.value(name)) for name in ("shifts", "rolls", "levels", "zones"))
-        closure, field = np.empty((shifts, rolls, FIELDS)), np.empty((zones, shifts, rolls, levels, FIELDS))
-        lib.rs_contact_table_arrays(self.pointer, _doubles(closure), _doubles(field))
+    def arrays(self, zone):
+        """closure (shifts, rolls, 2) and field (shifts, rolls, levels, 8) of a zone."""
+        shifts, rolls, levels = int(self.axes[zone, 2]), int(self.value("rolls")), int(self.value("levels"))
+        closure, field = np.empty((shifts, rolls, 2)), np.empty((shifts, rolls, levels, FIELDS))
+        lib.rs_contact_table_arrays(self.pointer, zone, _doubles(closure), _doubles(field))
         return closure, field
+
+    @property
+    def nbytes(self):
+        """Size in memory, bytes."""
+        nodes = self.axes[:, 2].sum() * self.value("rolls")
+        return int(8 * nodes * (2 + self.value("levels") * FIELDS))
 
     def lookup(self, place):
         """Patches (n, zones) as records `PATCH`, their number (n,), and `Outside` or None; place (n, 4): y, roll, drop, yaw."""

@@ -1,73 +1,92 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Rigid contact of one zone: the drop at which its least gap is zero. The least gap falls by cos(roll) - r' sin(roll) for a
- * drop of one, r' the slope of the wheel there. */
+ * drop of one, r' the slope of the wheel there. The whole rail is searched once, at the drop where the posture starts; then a
+ * window that goes along with the least gap. */
 #include <math.h>
 
 #include "posture.h"
 
 #define CLOSED 1e-12 /* m */
-enum { LOWERINGS = 4 };
+enum { LOWERINGS = 12, BESIDE = 6, WINDOW = 2 * BESIDE + 1 };
 
-static int in_zone(const rs_posture *p, int k, rs_zone zone)
+typedef struct {
+	int first, count;                    /* rail points */
+	double across[WINDOW], gap[WINDOW];
+} window;
+
+static int in_zone(double across, rs_zone zone)
 {
-	return p->across[k] >= zone.low && p->across[k] < zone.high;
+	return across >= zone.low && across < zone.high;
 }
 
-/* Where a zone ends between its sample k and the one beside it: the gap there, if it is less than at k. */
-static double gap_at_cut(const rs_posture *p, int k, rs_zone zone, int side, double *place)
-{
-	double cut = p->across[k + side] < zone.low ? zone.low : zone.high;
-	double t = (cut - p->across[k]) / (p->across[k + side] - p->across[k]);
-	*place = k + side * t;
-	return p->gap[k] + t * (p->gap[k + side] - p->gap[k]);
-}
-
-/* Least gap of a zone and its place (sample number and fraction), infinite where none of it is over the rail; whether it lies
- * at the end of a profile, where no contact can be computed. */
-static double least_gap(const rs_posture *p, rs_zone zone, double *place, int *end)
+/* Rail point of least gap in a zone, -1 where none of it is over the rail. */
+static int least_point(const double *across, const double *gap, int count, rs_zone zone)
 {
 	double least = INFINITY;
-	int last = p->from->rail_count - 1, at = -1;
-	for (int k = 0; k <= last; k++)
-		if (p->gap[k] < least && in_zone(p, k, zone)) {
-			least = p->gap[k];
+	int at = -1;
+	for (int k = 0; k < count; k++)
+		if (gap[k] < least && in_zone(across[k], zone)) {
+			least = gap[k];
 			at = k;
 		}
-	*place = at;
-	*end = at <= 0 || at >= last || !isfinite(p->gap[at - 1]) || !isfinite(p->gap[at + 1]);
-	if (*end)
-		return least;
-	for (int side = -1; side <= 1; side += 2)
-		if (!in_zone(p, at + side, zone)) {
-			double there = gap_at_cut(p, at, zone, side, place);
-			if (there < least)
-				return there;
-		}
-	/* vertex of the parabola through three samples */
-	double before = p->gap[at - 1] - least, after = p->gap[at + 1] - least, bend = before + after;
+	return at;
+}
+
+static void look(const rs_posture *p, int at, window *w)
+{
+	int last = p->from->rail_count - 1;
+	w->first = at > BESIDE ? at - BESIDE : 0;
+	w->count = (at + BESIDE < last ? at + BESIDE : last) - w->first + 1;
+	for (int k = 0; k < w->count; k++) {
+		double slope;
+		w->gap[k] = rs_gap_at(p, p->from->rail_y[w->first + k], p->from->rail_z[w->first + k], &w->across[k], &slope);
+	}
+}
+
+/* Least gap and its place (rail point and fraction): the vertex of the parabola through three points. */
+static double least_gap(const window *w, int k, double *place)
+{
+	double least = w->gap[k], before = w->gap[k - 1] - least, after = w->gap[k + 1] - least, bend = before + after;
 	double t = bend > 0.0 ? 0.5 * (before - after) / bend : 0.0;
-	*place = at + t;
+	*place = w->first + k + t;
 	return least - 0.25 * (before - after) * t;
+}
+
+/* At the end of a profile no contact can be computed. */
+static int at_end(const rs_posture *p, const window *w, int k)
+{
+	int point = w->first + k;
+	return point == 0 || point == p->from->rail_count - 1 || !isfinite(w->gap[k - 1]) || !isfinite(w->gap[k + 1]);
 }
 
 double rs_close_zone(rs_posture *p, rs_zone zone)
 {
-	double place, across = NAN, slope = 0.0, Y, Z;
-	int end = 0;
-	p->drop = 0.0;
+	window w;
+	int at = least_point(p->across, p->gap, p->from->rail_count, zone), end = 1;
+	if (at < 0)
+		return 0.0;
 	for (int k = 0; k < LOWERINGS; k++) {
-		rs_gaps(p);
-		double least = least_gap(p, zone, &place, &end);
-		if (!isfinite(least))
+		look(p, at, &w);
+		int here = least_point(w.across, w.gap, w.count, zone);
+		if (here < 0)
 			return 0.0;
+		int edge = w.first + here;
+		if (edge != at && (here == 0 || here == w.count - 1) && edge > 0 && edge < p->from->rail_count - 1) {
+			at = edge; /* the least gap lies further on */
+			continue;
+		}
+		at = edge;
+		end = at_end(p, &w, here);
+		if (!end && (w.gap[here - 1] < w.gap[here] || w.gap[here + 1] < w.gap[here]))
+			return 0.0; /* the gap falls beyond the end of the zone: the neighbour's contact */
+		double place = at, Y, Z, least = end ? w.gap[here] : least_gap(&w, here, &place);
 		rs_rail_at(p->from, place, &Y, &Z);
-		rs_gap_at(p, Y, Z, &across, &slope);
+		rs_gap_at(p, Y, Z, &p->touch_across, &p->touch_slope);
 		if (fabs(least) < CLOSED)
 			break;
-		p->drop += least / (p->cosine - slope * p->sine);
+		p->drop += least / (p->cosine - p->touch_slope * p->sine);
 	}
-	p->touch_across = across;
-	p->touch_slope = slope;
-	double cosine = 1.0 / sqrt(1.0 + slope * slope);
+	p->touch_point = at;
+	double cosine = 1.0 / sqrt(1.0 + p->touch_slope * p->touch_slope);
 	return end ? -cosine : cosine;
 }

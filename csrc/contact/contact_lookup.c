@@ -5,7 +5,7 @@
  * plane to the axle), where it is lower by psi^2/2 t (r t - Y') (to the second order in psi).
  */
 #include <math.h>
-#include <stddef.h>
+#include <string.h>
 
 #include "../dispatch.h"
 #include "contact_table.h"
@@ -54,28 +54,26 @@ INLINE int locate(const rs_axis *axis, double x, cell *c)
 	return 1;
 }
 
-enum { VALUE, BY_SHIFT, BY_ROLL, TWICE_BY_SHIFT, BY_BOTH, CLOSURES }; /* of closure fields */
-enum { BY_TAU = 3, FIELD_SLOPES };                                     /* of zone fields, after the first three */
+enum { VALUE, BY_SHIFT, BY_ROLL, TWICE_BY_SHIFT, BY_BOTH, CLOSURES }; /* of c and s */
+enum { BY_TAU = 3, FIELD_SLOPES };                                     /* of the fields, after the first three */
 
-INLINE void read_closure(const rs_contact_table *t, const cell *shift, const cell *roll, double out[CLOSURES][RS_FIELDS])
+INLINE void read_closure(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, double out[CLOSURES][RS_CLOSURE])
 {
-	for (int k = 0; k < CLOSURES; k++)
-		for (int f = 0; f < RS_FIELDS; f++)
-			out[k][f] = 0.0;
+	const double *first = t->zone[zone].closure + ((size_t)shift->node * (size_t)t->roll.count + (size_t)roll->node) * RS_CLOSURE;
+	memset(out, 0, CLOSURES * sizeof out[0]);
 	for (int i = 0; i < 4; i++) {
-		const double *node = t->closure + ((size_t)(shift->node + i) * (size_t)t->roll.count + (size_t)roll->node) * RS_FIELDS;
-		double value[RS_FIELDS], by_roll[RS_FIELDS];
-		for (int f = 0; f < RS_FIELDS; f++) {
-			double a = node[f], b = node[RS_FIELDS + f], c = node[2 * RS_FIELDS + f], d = node[3 * RS_FIELDS + f];
-			value[f] = roll->w[0] * a + roll->w[1] * b + roll->w[2] * c + roll->w[3] * d;
-			by_roll[f] = roll->d[0] * a + roll->d[1] * b + roll->d[2] * c + roll->d[3] * d;
-		}
-		for (int f = 0; f < RS_FIELDS; f++) {
-			out[VALUE][f] += shift->w[i] * value[f];
-			out[BY_SHIFT][f] += shift->d[i] * value[f];
-			out[BY_ROLL][f] += shift->w[i] * by_roll[f];
-			out[TWICE_BY_SHIFT][f] += shift->dd[i] * value[f];
-			out[BY_BOTH][f] += shift->d[i] * by_roll[f];
+		const double *node = first + (size_t)i * (size_t)t->roll.count * RS_CLOSURE;
+		for (int f = 0; f < RS_CLOSURE; f++) {
+			double value = 0.0, by_roll = 0.0;
+			for (int j = 0; j < 4; j++) {
+				value += roll->w[j] * node[j * RS_CLOSURE + f];
+				by_roll += roll->d[j] * node[j * RS_CLOSURE + f];
+			}
+			out[VALUE][f] += shift->w[i] * value;
+			out[BY_SHIFT][f] += shift->d[i] * value;
+			out[BY_ROLL][f] += shift->w[i] * by_roll;
+			out[TWICE_BY_SHIFT][f] += shift->dd[i] * value;
+			out[BY_BOTH][f] += shift->d[i] * by_roll;
 		}
 	}
 }
@@ -84,11 +82,9 @@ INLINE void read_field(const rs_contact_table *t, int zone, const cell *shift, c
                        double out[FIELD_SLOPES][RS_FIELDS])
 {
 	size_t along = (size_t)t->levels * RS_FIELDS;
-	const double *first = t->field + (((size_t)zone * (size_t)t->shift.count + (size_t)shift->node) * (size_t)t->roll.count +
-	                                  (size_t)roll->node) * along + (size_t)level->node * RS_FIELDS;
-	for (int k = 0; k < FIELD_SLOPES; k++)
-		for (int f = 0; f < RS_FIELDS; f++)
-			out[k][f] = 0.0;
+	const double *first = t->zone[zone].field + ((size_t)shift->node * (size_t)t->roll.count + (size_t)roll->node) * along +
+	                      (size_t)level->node * RS_FIELDS;
+	memset(out, 0, FIELD_SLOPES * sizeof out[0]);
 	for (int i = 0; i < 4; i++) {
 		double value[RS_FIELDS] = {0}, by_roll[RS_FIELDS] = {0}, by_tau[RS_FIELDS] = {0};
 		for (int j = 0; j < 4; j++) {
@@ -116,13 +112,13 @@ typedef struct {
 } slopes;
 
 /* Normal penetration p of a zone. */
-INLINE slopes penetration(const rs_contact_table *t, const double c[CLOSURES][RS_FIELDS], int zone, double drop, double yaw)
+INLINE slopes penetration(const rs_contact_table *t, const double c[CLOSURES][RS_CLOSURE], double drop, double yaw)
 {
-	double along = -c[BY_SHIFT][zone], half = 0.5 * yaw * yaw, arm = t->wheel_radius * along - t->spacing;
+	double along = -c[BY_SHIFT][0], half = 0.5 * yaw * yaw, arm = t->wheel_radius * along - t->spacing;
 	double lower = half * (2.0 * t->wheel_radius * along - t->spacing); /* d(lowering)/d(along) */
-	double P = drop - c[VALUE][zone] + half * along * arm, s = c[VALUE][RS_ZONES + zone];
-	slopes p = {s * P, {s * (-c[BY_SHIFT][zone] - lower * c[TWICE_BY_SHIFT][zone]) + P * c[BY_SHIFT][RS_ZONES + zone],
-	                    s * (-c[BY_ROLL][zone] - lower * c[BY_BOTH][zone]) + P * c[BY_ROLL][RS_ZONES + zone], s, s * yaw * along * arm}};
+	double P = drop - c[VALUE][0] + half * along * arm, s = c[VALUE][1];
+	slopes p = {s * P, {s * (-c[BY_SHIFT][0] - lower * c[TWICE_BY_SHIFT][0]) + P * c[BY_SHIFT][1],
+	                    s * (-c[BY_ROLL][0] - lower * c[BY_BOTH][0]) + P * c[BY_ROLL][1], s, s * yaw * along * arm}};
 	return p;
 }
 
@@ -195,25 +191,29 @@ static int refuse(int which, int *beyond)
 
 RS_CLONES int rs_contact_lookup(const rs_contact_table *t, const double *place, rs_patch *patch, int *count, int *beyond)
 {
-	cell shift, roll;
-	double closure[CLOSURES][RS_FIELDS];
+	cell shift[RS_ZONES], roll;
 	slopes p[RS_ZONES];
+	double eta = place[0] - t->wheel_radius * place[1];
 	*count = 0;
 	if (!isfinite(place[0] + place[1] + place[2] + place[3]))
 		return RS_NOT_FINITE;
 	if (!locate(&t->roll, place[1], &roll))
 		return refuse(1, beyond);
-	if (!locate(&t->shift, place[0] - t->wheel_radius * place[1], &shift))
+	if (!locate(&t->shift, eta, &shift[0]))
 		return refuse(0, beyond);
-	read_closure(t, &shift, &roll, closure);
 	for (int z = 0; z < t->zones; z++) {
-		p[z] = penetration(t, closure, z, place[2], place[3]);
+		double closure[CLOSURES][RS_CLOSURE];
+		p[z].v = 0.0;
+		if (!locate(&t->zone[z].shift, eta, &shift[z]))
+			continue; /* the zone cannot touch here */
+		read_closure(t, z, &shift[z], &roll, closure);
+		p[z] = penetration(t, closure, place[2], place[3]);
 		if (!(p[z].v <= t->deepest))
 			return refuse(2, beyond);
 	}
 	for (int z = 0; z < t->zones; z++)
 		if (p[z].v > LEAST_TAU * LEAST_TAU * t->deepest) {
-			read_patch(t, z, &shift, &roll, &p[z], place, patch + *count);
+			read_patch(t, z, &shift[z], &roll, &p[z], place, patch + *count);
 			if (!isfinite(patch[*count].load[0])) { /* a zone that meets the rail beyond an end of a profile */
 				*count = 0;
 				return refuse(0, beyond);

@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t closure_size(const rs_contact_table *t)
+static size_t closure_size(const rs_contact_table *t, int zone)
 {
-	return (size_t)t->shift.count * (size_t)t->roll.count * RS_FIELDS;
+	return (size_t)t->zone[zone].shift.count * (size_t)t->roll.count * RS_CLOSURE;
 }
 
-static size_t field_size(const rs_contact_table *t)
+static size_t field_size(const rs_contact_table *t, int zone)
 {
-	return closure_size(t) * (size_t)t->levels * (size_t)t->zones;
+	return (size_t)t->zone[zone].shift.count * (size_t)t->roll.count * (size_t)t->levels * RS_FIELDS;
 }
 
 static double *zeros(size_t count)
@@ -24,64 +24,100 @@ static double *zeros(size_t count)
 	return room;
 }
 
-rs_contact_table *rs_contact_table_allocate(int shifts, int rolls, int levels, int zones)
+static rs_axis axis_of(const double *numbers)
+{
+	return (rs_axis){numbers[0], numbers[1], (int)numbers[2]};
+}
+
+static int is_axis(const rs_axis *axis)
+{
+	return axis->count >= 4 && axis->count <= 100000 && axis->step > 0.0;
+}
+
+/* Shape: axes of shift and roll (start, step, nodes each), levels, zones, deepest, wheel radius, spacing. NULL: no memory. */
+rs_contact_table *rs_contact_table_allocate(const double *shape)
 {
 	rs_contact_table *t = calloc(1, sizeof *t);
 	if (!t)
 		return NULL;
-	t->shift.count = shifts;
-	t->roll.count = rolls;
-	t->levels = levels;
-	t->zones = zones;
-	t->closure = zeros(closure_size(t));
-	t->field = zeros(field_size(t));
-	if (!t->closure || !t->field) {
-		rs_contact_table_free(t);
-		return NULL;
-	}
+	t->shift = axis_of(shape);
+	t->roll = axis_of(shape + 3);
+	t->levels = (int)shape[6];
+	t->zones = (int)shape[7];
+	t->deepest = shape[8];
+	t->wheel_radius = shape[9];
+	t->spacing = shape[10];
 	return t;
+}
+
+/* Room for a zone whose axis is set. */
+int rs_zone_table_allocate(rs_contact_table *t, int zone)
+{
+	t->zone[zone].closure = zeros(closure_size(t, zone));
+	t->zone[zone].field = zeros(field_size(t, zone));
+	return t->zone[zone].closure && t->zone[zone].field ? RS_OK : RS_NO_MEMORY;
 }
 
 void rs_contact_table_free(rs_contact_table *t)
 {
 	if (!t)
 		return;
-	free(t->closure);
-	free(t->field);
+	for (int z = 0; z < RS_ZONES; z++) {
+		free(t->zone[z].closure);
+		free(t->zone[z].field);
+	}
 	free(t);
 }
 
-void rs_contact_table_shape(const rs_contact_table *t, double *shape)
+static int is_shape(const rs_contact_table *t)
+{
+	return is_axis(&t->shift) && is_axis(&t->roll) && t->levels >= 5 && t->levels <= 100 && t->zones >= 1 && t->zones <= RS_ZONES &&
+	       t->deepest > 0.0;
+}
+
+int rs_contact_table_check(const double *shape)
+{
+	rs_contact_table t = {.shift = axis_of(shape), .roll = axis_of(shape + 3), .levels = (int)shape[6], .zones = (int)shape[7], .deepest = shape[8]};
+	return is_shape(&t) ? RS_OK : RS_BAD_SIZE;
+}
+
+void rs_contact_table_shape(const rs_contact_table *t, double *shape, double *axes)
 {
 	double values[RS_TABLE_SHAPE] = {t->shift.start, t->shift.step, t->shift.count, t->roll.start, t->roll.step, t->roll.count,
 	                                 t->levels, t->zones, t->deepest, t->wheel_radius, t->spacing};
 	memcpy(shape, values, sizeof values);
+	for (int z = 0; z < t->zones; z++) {
+		axes[3 * z] = t->zone[z].shift.start;
+		axes[3 * z + 1] = t->zone[z].shift.step;
+		axes[3 * z + 2] = t->zone[z].shift.count;
+	}
 }
 
-void rs_contact_table_arrays(const rs_contact_table *t, double *closure, double *field)
+void rs_contact_table_arrays(const rs_contact_table *t, int zone, double *closure, double *field)
 {
-	memcpy(closure, t->closure, closure_size(t) * sizeof(double));
-	memcpy(field, t->field, field_size(t) * sizeof(double));
+	memcpy(closure, t->zone[zone].closure, closure_size(t, zone) * sizeof(double));
+	memcpy(field, t->zone[zone].field, field_size(t, zone) * sizeof(double));
 }
 
-int rs_contact_table_of_arrays(const double *shape, const double *closure, const double *field, rs_contact_table **made)
+int rs_contact_table_of_arrays(const double *shape, const double *axes, const double *const *closure, const double *const *field,
+                               rs_contact_table **made)
 {
-	int shifts = (int)shape[2], rolls = (int)shape[5], levels = (int)shape[6], zones = (int)shape[7];
 	*made = NULL;
-	if (shifts < 4 || rolls < 4 || levels < 5 || zones < 1 || zones > RS_ZONES || !(shape[1] > 0.0) || !(shape[4] > 0.0) || !(shape[8] > 0.0))
+	if (rs_contact_table_check(shape) != RS_OK)
 		return RS_BAD_SIZE;
-	rs_contact_table *t = rs_contact_table_allocate(shifts, rolls, levels, zones);
-	if (!t)
-		return RS_NO_MEMORY;
-	t->shift.start = shape[0];
-	t->shift.step = shape[1];
-	t->roll.start = shape[3];
-	t->roll.step = shape[4];
-	t->deepest = shape[8];
-	t->wheel_radius = shape[9];
-	t->spacing = shape[10];
-	memcpy(t->closure, closure, closure_size(t) * sizeof(double));
-	memcpy(t->field, field, field_size(t) * sizeof(double));
-	*made = t;
-	return RS_OK;
+	rs_contact_table *t = rs_contact_table_allocate(shape);
+	int status = t ? RS_OK : RS_NO_MEMORY;
+	for (int z = 0; status == RS_OK && z < t->zones; z++) {
+		t->zone[z].shift = axis_of(axes + 3 * z);
+		status = is_axis(&t->zone[z].shift) ? rs_zone_table_allocate(t, z) : RS_BAD_SIZE;
+		if (status != RS_OK)
+			break;
+		memcpy(t->zone[z].closure, closure[z], closure_size(t, z) * sizeof(double));
+		memcpy(t->zone[z].field, field[z], field_size(t, z) * sizeof(double));
+	}
+	if (status == RS_OK)
+		*made = t;
+	else
+		rs_contact_table_free(t);
+	return status;
 }

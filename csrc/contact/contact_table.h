@@ -16,14 +16,15 @@
  * of a yawed wheel, to the second order), a zone carries load K p^(3/2), and K, the place of the contact,
  * its angle, and a/p^(1/2), b/p^(1/2) are tabled over (eta, roll, tau) from the elastic contact of
  * strips.c. Between the nodes they are cubics with the nodes' central differences as slopes
- * (Catmull-Rom): continuous with continuous slopes.
+ * (Catmull-Rom): continuous with continuous slopes. Each zone has its own nodes of eta, over the range
+ * where it can touch before the wheel is beyond the deepest penetration; outside it the zone is in the air.
  */
 #ifndef RS_CONTACT_TABLE_H
 #define RS_CONTACT_TABLE_H
 
 #include "../railsym.h"
 
-enum { RS_FIELDS = 8 };
+enum { RS_FIELDS = 8, RS_CLOSURE = 2 };
 enum { RS_STIFFNESS, RS_ACROSS, RS_RADIUS, RS_ANGLE, RS_LENGTH, RS_WIDTH }; /* fields of a zone */
 
 typedef struct {
@@ -31,17 +32,23 @@ typedef struct {
 	int count;              /* nodes, one more at each end than the range that may be read */
 } rs_axis;
 
+typedef struct {
+	rs_axis shift;
+	double *closure;        /* shift x roll x 2: c, s */
+	double *field;          /* shift x roll x level x RS_FIELDS; a stiffness that is not a number: off the rail */
+} rs_zone_table;
+
 struct rs_contact_table {
-	rs_axis shift, roll;
+	rs_axis shift, roll;    /* shift: the whole range that may be read */
 	int levels;             /* nodes of tau: one before 0, 0, 1/m ... 1, one beyond: m + 3 */
 	int zones;
 	double deepest;         /* p_max, m */
 	double wheel_radius;    /* r0, m */
 	double spacing;         /* lateral place of the tape circle, m */
-	double *closure;        /* shift x roll x RS_FIELDS: c of each zone, then s of each zone; NaN: off the rail */
-	double *field;          /* zone x shift x roll x level x RS_FIELDS */
+	rs_zone_table zone[RS_ZONES];
 };
 
-rs_contact_table *rs_contact_table_allocate(int shifts, int rolls, int levels, int zones);
+rs_contact_table *rs_contact_table_allocate(const double *shape);
+int rs_zone_table_allocate(rs_contact_table *table, int zone);
 
 #endif

@@ -70,6 +70,7 @@ static void lay_strips(const rs_posture *p, const runs *found, double depth, rs_
 {
 	double cell = found->total / RS_STRIPS, at = -0.5 * cell;
 	strips->width = cell * p->from->rail_step;
+	strips->together = found->count == 1;
 	for (int j = 0, run = 0; j < RS_STRIPS; j++) {
 		at += cell;
 		while (run < found->count - 1 && at > found->to[run] - found->from[run]) {
@@ -108,7 +109,7 @@ static void gather(const rs_strip_patch *strips, const strip_place *place, const
 }
 
 int rs_patch_fields(const rs_posture *p, const rs_influence *influence, double modulus, rs_zone zone, double depth, double normal,
-                    double *field)
+                    double *length, double *field)
 {
 	rs_strip_patch strips;
 	strip_place place[RS_STRIPS];
@@ -128,10 +129,14 @@ int rs_patch_fields(const rs_posture *p, const rs_influence *influence, double m
 		return RS_NOT_CONVERGED;
 	strips.modulus = modulus;
 	strips.curvature = 0.5 / (rs_wheel_radius(p->from, place[top].across) * sqrt(1.0 + place[top].slope * place[top].slope));
+	double root = sqrt(normal);
+	int guessed = length[top] > 0.0;
 	for (int j = 0; j < RS_STRIPS; j++)
-		strips.a[j] = strips.u[j] > 0.0 ? sqrt(0.5 * strips.u[j] / strips.curvature) : 0.0;
+		strips.a[j] = guessed ? length[j] * root : strips.u[j] > 0.0 ? sqrt(0.5 * strips.u[j] / strips.curvature) : 0.0;
 	if (rs_strip_contact(influence, &strips) != RS_OK)
 		return RS_NOT_CONVERGED;
+	for (int j = 0; j < RS_STRIPS; j++)
+		length[j] = strips.a[j] / root;
 	gather(&strips, place, p, normal, field);
 	return RS_OK;
 }

@@ -22,7 +22,7 @@
 
 #define PI 3.14159265358979323846
 #define LEAST_LENGTH 0.1    /* of the width: H of shorter strips is that of this one (their load is negligible) */
-#define TOLERANCE 1e-4      /* on a_j, of the largest */
+#define TOLERANCE 3e-4      /* on a_j, of the largest */
 #define SLACK 1e-4          /* of the largest u: overlap that adds a strip to the contact */
 enum { MOST_ROUNDS = 30, MOST_SETS = 12 };
 
@@ -44,16 +44,35 @@ static double pressure_gradient(const rs_strip_patch *p)
 	return 3.0 * p->modulus * p->curvature / (ratio * rs_elliptic_rd(ratio * ratio, 1.0));
 }
 
-static void fill(const rs_influence *table, const rs_strip_patch *p, workspace *w)
+/* One column of the matrix of (2); strips of one run lie at multiples of their width, so their faces are shared. */
+static void fill_column(const rs_influence *table, const rs_strip_patch *p, int j, double factor, workspace *w)
 {
-	double factor = p->gradient / (PI * p->modulus), half = 0.5 * p->width;
-	for (int j = 0; j < RS_STRIPS; j++) {
-		double length = p->a[j] > LEAST_LENGTH * p->width ? p->a[j] : LEAST_LENGTH * p->width, inverse = 1.0 / length;
+	double length = p->a[j] > LEAST_LENGTH * p->width ? p->a[j] : LEAST_LENGTH * p->width, inverse = 1.0 / length;
+	double half = 0.5 * p->width;
+	if (!p->together) {
 		for (int i = 0; i < RS_STRIPS; i++) {
 			double away = p->s[i] - p->s[j];
 			w->m[i][j] = factor * (rs_influence_at(table, (away + half) * inverse) - rs_influence_at(table, (away - half) * inverse));
 		}
+		return;
 	}
+	int far = j > RS_STRIPS - 1 - j ? j : RS_STRIPS - 1 - j;
+	double value[RS_STRIPS], before = 0.0;
+	for (int k = 0; k <= far; k++) {
+		double face = rs_influence_at(table, (k * p->width + half) * inverse);
+		value[k] = factor * (face - before);
+		before = face;
+	}
+	value[0] *= 2.0;
+	for (int i = 0; i < RS_STRIPS; i++)
+		w->m[i][j] = value[i > j ? i - j : j - i];
+}
+
+static void fill(const rs_influence *table, const rs_strip_patch *p, workspace *w)
+{
+	double factor = p->gradient / (PI * p->modulus);
+	for (int j = 0; j < RS_STRIPS; j++)
+		fill_column(table, p, j, factor, w);
 }
 
 /* z of the active strips, by elimination; the diagonal is the largest of its row. */

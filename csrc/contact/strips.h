@@ -24,6 +24,7 @@ typedef struct {
 	double s[RS_STRIPS];   /* m, place of each strip across the track, along the surface */
 	double u[RS_STRIPS];   /* m, by how much the surfaces would overlap there; contact is where u > 0 or less */
 	double a[RS_STRIPS];   /* m, half length of each strip, 0 where there is no contact */
+	int together;          /* 1: the strips lie side by side, in one run */
 	double width;          /* m, of every strip */
 	double curvature;      /* 1/m, A: the gap along the track is A x^2 */
 	double modulus;        /* N/m^2, contact modulus E' */

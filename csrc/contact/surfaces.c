@@ -13,7 +13,7 @@
 /* Radius of the wheel and its slope, cubic between samples; 0 where the wheel ends. */
 static int wheel_at(const rs_surfaces *f, double across, double *radius, double *slope)
 {
-	double t = (across - f->wheel_start) / f->wheel_step;
+	double inverse = 1.0 / f->wheel_step, t = (across - f->wheel_start) * inverse;
 	if (!(t >= 0.0 && t < f->wheel_count - 1))
 		return 0;
 	int k = (int)t;
@@ -22,7 +22,7 @@ static int wheel_at(const rs_surfaces *f, double across, double *radius, double 
 	double m0 = h * f->wheel_slope_at[k], m1 = h * f->wheel_slope_at[k + 1];
 	double c2 = 3.0 * rise - 2.0 * m0 - m1, c3 = m0 + m1 - 2.0 * rise;
 	*radius = r0 + t * (m0 + t * (c2 + t * c3));
-	*slope = (m0 + t * (2.0 * c2 + t * 3.0 * c3)) / h;
+	*slope = (m0 + t * (2.0 * c2 + t * 3.0 * c3)) * inverse;
 	return 1;
 }
 
@@ -40,6 +40,7 @@ double rs_gap_at(const rs_posture *p, double Y, double Z, double *across, double
 
 void rs_gaps(rs_posture *p)
 {
+	p->gap_drop = p->drop;
 	for (int k = 0; k < p->from->rail_count; k++)
 		p->gap[k] = rs_gap_at(p, p->from->rail_y[k], p->from->rail_z[k], &p->across[k], &p->slope[k]);
 }
