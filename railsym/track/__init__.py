@@ -27,6 +27,7 @@ _MODULE_OF = {
     "read_geometry": "measured",
     "read_irregularity": "irregularity",
     "spectra": "spectrum",
+    "tracks": "reading",
 }
 
 __all__ = list(_MODULE_OF)

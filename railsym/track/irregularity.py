@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Track irregularity: random after a spectrum, or measured."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +38,8 @@ class RandomIrregularity:
         m, at least 1, over which it fades in behind the start, and out where it ends before the track does.
     scale : float
         Factor on all signals.
+    mirrored : bool
+        Left and right exchanged: alignment and cant change their sign.
     """
 
     spectrum: str
@@ -47,11 +49,13 @@ class RandomIrregularity:
     length: float | None = None
     fade: float = 25.0
     scale: float = 1.0
+    mirrored: bool = False
 
     def __post_init__(self):
         if isinstance(self.seed, bool) or not isinstance(self.seed, (int, np.integer)) or self.seed < 0:
             raise TrackError(f"seed = {self.seed!r}: a whole number from 0 on is needed, so that the track can be made again")
         object.__setattr__(self, "seed", int(self.seed))
+        load_spectrum(self.spectrum)
         _check_place(self)
         object.__setattr__(self, "scale", number(self.scale, "irregularity: scale", "-"))
         short, long = self.band()
@@ -104,7 +108,8 @@ class RandomIrregularity:
         raw = np.random.PCG64(np.random.SeedSequence([self.seed, which])).random_raw(len(k))
         phase = 2.0 * np.pi * (raw >> np.uint64(11)) * 2.0**-53
         series = np.zeros(period // 2 + 1, dtype=complex)
-        amplitude = self.scale * np.sqrt(2.0 * spectrum.densities[name](k * spacing) * spacing)
+        sign = -1.0 if self.mirrored and name in ("alignment", "cant") else 1.0
+        amplitude = sign * self.scale * np.sqrt(2.0 * spectrum.densities[name](k * spacing) * spacing)
         series[k] = 0.5 * period * amplitude * np.exp(1j * phase)
         return np.fft.irfft(series, period)
 
@@ -146,8 +151,6 @@ class MeasuredIrregularity:
     fade: float = 25.0
     covers: bool = True
     name: str = "irregularity"
-    start: float = field(init=False, default=0.0, repr=False)
-    length: None = field(init=False, default=None, repr=False)
 
     def __post_init__(self):
         given = {key: getattr(self, key) for key in (*SIGNALS, *RAILS) if getattr(self, key) is not None}
@@ -170,6 +173,12 @@ class MeasuredIrregularity:
         names = SIGNALS if set(columns) & set(SIGNALS) else RAILS
         values = np.stack([columns.get(name, np.zeros_like(self.s)) for name in names], axis=1)
         return rails_of(values) if names is SIGNALS else values
+
+    def filtered(self, wavelengths):
+        """The same within a band of wavelengths (m): `railsym.track.filtering.filtered`."""
+        from railsym.track.filtering import filtered
+
+        return filtered(self, wavelengths)
 
     def layer(self, track_length):
         """Deviations of the rails on a track of that length (m), as RailLayer."""
@@ -226,15 +235,17 @@ def write_irregularity(path, s, rails):
 
 def _check_place(what):
     for name, low in (("start", 0.0), ("fade", 1.0)):
-        object.__setattr__(what, name, number(getattr(what, name), f"irregularity: {name}", "m", low=low))
-    if what.length is not None:
+        if hasattr(what, name):
+            object.__setattr__(what, name, number(getattr(what, name), f"irregularity: {name}", "m", low=low))
+    if getattr(what, "length", None) is not None:
         object.__setattr__(what, "length", number(what.length, "irregularity: length", "m", above=0.0))
 
 
 def _faded_layer(start, step, rails, end, fade_in, fade_out):
     if fade_in + fade_out > end - start:
         raise TrackError(f"irregularity from s = {start:.6g} m to {end:.6g} m is shorter than its fading, {fade_in + fade_out:g} m; make the fading shorter")
-    s = start + step * np.arange(len(rails))
-    rails = rails * window(s, start, end, fade_in, fade_out)[:, None]
     quiet = np.zeros((REST, 4))
-    return spline_layer(start - REST * step, step, np.concatenate([quiet, rails, quiet if fade_out else quiet[:0]]))
+    # beyond the end of the track a node more, so that the end lies inside the spline
+    tail = quiet if fade_out else 2.0 * rails[-1:] - rails[-2:-1]
+    rails = rails * window(start + step * np.arange(len(rails)), start, end, fade_in, fade_out)[:, None]
+    return spline_layer(start - REST * step, step, np.concatenate([quiet, rails, tail]), after=tail[-1])

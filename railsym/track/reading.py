@@ -10,17 +10,29 @@ from railsym.track.irregularity import read_irregularity
 from railsym.track.measured import read_geometry
 from railsym.track.toml_values import Reader
 from railsym.track.track import Track
+from railsym.vehicle_checks import unknown
 
+_FOLDER = Path(__file__).resolve().parent.parent / "data" / "tracks"
 _TOP = ("track", "sections", "vertical", "geometry", "irregularities", "switches")
 
 
-def load_track(path):
-    """A track from a TOML file.
+def tracks():
+    """Names of the tracks that come along.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
+
+
+def load_track(name_or_path):
+    """A track by name, or from a TOML file.
 
     Parameters
     ----------
-    path : path
-        Files that it names are looked up beside it.
+    name_or_path : str or path
+        One of `tracks`, or a file that ends in .toml; files that it names are looked up beside it.
 
     Returns
     -------
@@ -31,7 +43,11 @@ def load_track(path):
     TrackError
         Naming file, key, value, what is allowed and the nearest match.
     """
-    path = Path(path)
+    path = Path(name_or_path)
+    if path.suffix != ".toml":
+        if str(name_or_path) not in tracks():
+            raise TrackError(f"track {str(name_or_path)!r} is {unknown(name_or_path, tracks(), 'names')}; a file ends in .toml")
+        path = _FOLDER / f"{name_or_path}.toml"
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

@@ -20,7 +20,8 @@ VERTICAL = {
     "gradient": (Gradient, {"length": "m", "gradient": "-"}),
     "vertical_curve": (VerticalCurve, {"radius": "m", "length": "m"}),
 }
-RANDOM = (RandomIrregularity, {"spectrum": "text", "seed": "whole", "wavelengths": "pair m", "start": "m", "length": "m", "fade": "m", "scale": "-"})
+RANDOM = (RandomIrregularity, {"spectrum": "text", "seed": "whole", "wavelengths": "pair m", "start": "m", "length": "m", "fade": "m", "scale": "-",
+                              "mirrored": "flag"})
 MEASURED = (MeasuredIrregularity, {"name": "text", "s": "column m", **dict.fromkeys((*SIGNALS, *RAILS), "column m"), "fade": "m", "covers": "flag"})
 IRREGULARITY_FILE = {"file": "text", "fade": "m", "covers": "flag"}
 GEOMETRY = (MeasuredGeometry, {"name": "text", **{name: f"column {unit}" for name, unit in COLUMNS.items()}})

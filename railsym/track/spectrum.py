@@ -26,7 +26,7 @@ class Density:
     Attributes
     ----------
     amplitude : float
-        A; m rad where S falls as Omega^-2 for large Omega / Oc^2.
+        A, m rad
     factor : float
     numerator_corner : float
         Oc, rad/m
@@ -142,7 +142,7 @@ def _spectrum(read, document):
 def _density(read, name, table, sides):
     if isinstance(table, dict) and "density" in table:
         read.table(name, table, ("wavenumber", "density"), ("wavenumber", "density"))
-        omega, values = read.quantity(f"{name}.wavenumber", table["wavenumber"], "rad/m", count=-1), read.quantity(f"{name}.density", table["density"], _UNIT, count=-1)
+        omega, values = (read.quantity(f"{name}.{key}", table[key], unit, count=-1) for key, unit in (("wavenumber", "rad/m"), ("density", _UNIT)))
         if len(omega) != len(values) or (np.diff(omega) <= 0).any() or omega[0] <= 0 or (values <= 0).any():
             raise read.problem(name, None, "wavenumber must increase and be positive, density be positive, and both be equally many")
         return Density(table=(omega, values), sides=sides)
@@ -151,6 +151,6 @@ def _density(read, name, table, sides):
     power = table.get("numerator_power", 0)
     if not isinstance(power, int) or power < 0 or power >= 2 * len(corners):
         raise read.problem(f"{name}.numerator_power", power, "a whole number from 0 to below twice the number of corners is needed")
-    return Density(float(read.quantity(f"{name}.amplitude", table["amplitude"], "m*rad", low=0.0)),
-                   float(read.quantity(f"{name}.factor", table.get("factor", [1.0, "-"]), "-", low=0.0)),
-                   float(read.quantity(f"{name}.numerator_corner", table.get("numerator_corner", [1.0, "rad/m"]), "rad/m")), power, tuple(corners.tolist()), sides=sides)
+    amplitude, factor, corner = (float(read.quantity(f"{name}.{key}", table.get(key, default), unit, low=0.0)) for key, default, unit in
+                                 (("amplitude", None, "m*rad"), ("factor", [1.0, "-"], "-"), ("numerator_corner", [1.0, "rad/m"], "rad/m")))
+    return Density(amplitude, factor, corner, power, tuple(corners.tolist()), sides=sides)

@@ -14,11 +14,6 @@ _STEP = 0.01          # m, distance of nodes
 LARGEST = 0.1         # m
 
 
-def _step(x):
-    """rises to the amplitude and stays: 10 x^3 - 15 x^4 + 6 x^5"""
-    return smooth_step(x)
-
-
 def _half_sine(x):
     """sin(pi x), with a corner at either end"""
     return np.where((x > 0.0) & (x < 1.0), np.sin(np.pi * np.clip(x, 0.0, 1.0)), 0.0)
@@ -34,12 +29,12 @@ def _blade(x):
     return np.interp(x, [0.0, 0.3, 1.0], [0.0, 1.0, 0.0])
 
 
-# shape -> function, deviation behind it, corners (parts of the length), whether the slope jumps there
+# shape -> function, deviation behind it, where its slope jumps (parts of the length)
 SHAPES = {
-    "smooth_step": (_step, 1.0, (), False),
-    "half_sine": (_half_sine, 0.0, (0.0, 1.0), True),
-    "bump": (_bump, 0.0, (), False),
-    "blade": (_blade, 0.0, (0.0, 0.3, 1.0), True),
+    "smooth_step": (smooth_step, 1.0, ()),
+    "half_sine": (_half_sine, 0.0, (0.0, 1.0)),
+    "bump": (_bump, 0.0, ()),
+    "blade": (_blade, 0.0, (0.0, 0.3, 1.0)),
 }
 _MOVED = {"both": ("left", "right"), "left": ("left",), "right": ("right",)}
 
@@ -86,8 +81,9 @@ class Switch:
 
     def layers(self, track_length):
         """Deviations of the rails on a track of that length (m): RailLayer of the blades, and of the crossing."""
-        function, after, _, corners = SHAPES[self.shape]
-        found = [self._layer("switch", self.start, self.length, self.amplitude * function(_inside(self.length)), "y", self.amplitude * after, not corners, track_length)]
+        function, after, corners = SHAPES[self.shape]
+        values = self.amplitude * function(_inside(self.length))
+        found = [self._layer("switch", self.start, self.length, values, "y", self.amplitude * after, not corners, track_length)]
         if self.crossing_start is not None:
             dip = self.crossing_depth * _bump(_inside(self.crossing_length))
             found.append(self._layer("crossing", self.crossing_start, self.crossing_length, dip, "z", 0.0, True, track_length))

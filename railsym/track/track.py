@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from railsym._core_track import CTrack, out_of_track
 from railsym.errors import TrackError
 from railsym.track.alignment import alignment
 from railsym.track.integration import pieces
-from railsym.track.irregularity import MeasuredIrregularity, RandomIrregularity
+from railsym.track.irregularity import MeasuredIrregularity, RandomIrregularity, read_irregularity
 from railsym.track.measured import MeasuredGeometry, read_geometry
 from railsym.track.places import Frames, Rails
 from railsym.track.sections import RAIL_SPACING, Curve, Straight, Transition, number
@@ -70,6 +71,10 @@ class Track:
         if self.vertical and isinstance(self.sections, MeasuredGeometry):
             raise TrackError("measured geometry holds its gradient: vertical sections do not go with it")
         self.core      # what does not fit is said now, not in a run
+
+    def __getstate__(self):
+        """What a copy in another process needs; C memory is made again there."""
+        return {name: value for name, value in vars(self).items() if name not in ("core", "alignment")}
 
     # --- ways to make one ----------------------------------------------------------------------------------------------
 
@@ -132,11 +137,12 @@ class Track:
 
         Parameters
         ----------
-        irregularity : str, RandomIrregularity or MeasuredIrregularity
-            A spectrum by name (`railsym.track.spectra` lists them) or TOML file, with a ``seed``; or made before.
+        irregularity : str, path, RandomIrregularity or MeasuredIrregularity
+            A spectrum by name (`railsym.track.spectra` lists them) or TOML file, with a ``seed``; measured values as a CSV file; or
+            made before.
         seed : int
         options
-            As for `RandomIrregularity`: wavelengths, start, length, fade (m), scale.
+            As for `RandomIrregularity`: wavelengths, start, length, fade (m), scale; for a CSV file fade, covers.
 
         Returns
         -------
@@ -145,10 +151,14 @@ class Track:
         if isinstance(irregularity, (RandomIrregularity, MeasuredIrregularity)):
             if seed is not None or options:
                 raise TrackError("this irregularity is made already: seed and options belong to a spectrum")
-        elif isinstance(irregularity, str):
+        elif isinstance(irregularity, (str, Path)) and Path(irregularity).suffix.lower() in (".csv", ".txt"):
+            if seed is not None:
+                raise TrackError(f"{irregularity} is measured: a seed belongs to a spectrum")
+            irregularity = read_irregularity(irregularity, **options)
+        elif isinstance(irregularity, (str, Path)):
             if seed is None:
-                raise TrackError(f"irregularity {irregularity!r} is random: give a seed, such as seed=1, so that it can be made again")
-            irregularity = RandomIrregularity(irregularity, seed, **options)
+                raise TrackError(f"irregularity {str(irregularity)!r} is random: give a seed, such as seed=1, so that it can be made again")
+            irregularity = RandomIrregularity(str(irregularity), seed, **options)
         else:
             raise TrackError(f"irregularity {irregularity!r} is none: give the name of a spectrum, a RandomIrregularity or a MeasuredIrregularity")
         return replace(self, irregularities=(*self.irregularities, irregularity))
@@ -156,6 +166,12 @@ class Track:
     def with_switch(self, switch=None, **options):
         """The same track with one switch more: a `Switch`, or its start, length, amplitude, shape, rails, crossing_..."""
         return replace(self, switches=(*self.switches, switch or Switch(**options)))
+
+    def mirrored(self):
+        """The same track with left and right exchanged."""
+        from railsym.track.mirror import mirrored
+
+        return mirrored(self)
 
     # --- what it is ----------------------------------------------------------------------------------------------------
 
