@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from railsym.plots.style import BLUE, GREY, VERMILION, line_styles, new_axes, tidy
+from railsym.plots.runs import solid_styles
+from railsym.plots.style import BLUE, GREY, VERMILION, new_axes, tidy
 
 _MOST = 8
 
@@ -72,15 +73,14 @@ def plot_sliding(result, quantity, *, axes=None):
         raise ValueError(f"{quantity!r} is no sliding mean; there are Y/Q and sum Y")
     scale, unit = (1e-3, "kN") if worst.unit == "N" else (1.0, "")
     panel = new_axes(axes, size=(7.2, 3.2))[0, 0]
-    for name, style in line_styles(names).items():
+    for name, style in solid_styles(names).items():
         values = result.signals[name] * scale
-        panel.plot(result.distance[name], np.where(np.isfinite(values), values, np.nan), label=name.rpartition(" ")[2],
-                   **(style | {"marker": None, "linewidth": 1.1}))
+        panel.plot(result.distance[name], np.where(np.isfinite(values), values, np.nan), label=name.rpartition(" ")[2], **style)
     limits = sorted({round(result[name].limit.value * scale, 9) for name in names})
     for bound in limits:
         for side in (-bound, bound):
             panel.axhline(side, color=GREY, linewidth=1.0, linestyle="--" if worst.limit.trusted else ":")
-    text = f"limit {limits[0]:.3g} {unit} ({worst.limit.trust}{'' if worst.limit.trusted else ', recalled'})"
+    text = f"limit {limits[0]:.3g}{' ' * bool(unit)}{unit} ({worst.limit.trust}{'' if worst.limit.trusted else ', recalled'})"
     panel.annotate(text, (1.0, limits[0]), (0, 2), xycoords=("axes fraction", "data"), textcoords="offset points", ha="right", fontsize=8, color="#555555")
     panel.margins(x=0.01)
     tidy(panel, "distance, m", f"{quantity}{', ' + unit if unit else ''}, 2 m mean")
