@@ -40,7 +40,8 @@ class BodyAcceleration:
         return self.message
 
 
-def body_acceleration(source, signal=None, *, channels=("car*.ay", "car*.az"), band=None, sections=None, order=4, zero_phase=True, distance=None, speed=None):
+def body_acceleration(source, signal=None, *, channels=("car*.ay", "car*.az"), band=None, sections=None, order=4, zero_phase=True,
+                      distance=None, speed=None):
     """Peak (percentiles 0.15 and 99.85), r.m.s. and quasi-static body accelerations.
 
     Parameters

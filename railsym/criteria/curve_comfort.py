@@ -43,8 +43,8 @@ class CurveComfort:
     @property
     def message(self):
         """In a sentence."""
-        return (f"P_CT = {self.percent:.3g} % ({self.posture}; formula recalled and unverified, {self.trust}): lateral acceleration {self.acceleration:.3g} m/s^2, "
-                f"jerk {self.jerk:.3g} m/s^3, roll rate {np.degrees(self.roll_rate):.3g} deg/s")
+        return (f"P_CT = {self.percent:.3g} % ({self.posture}; formula recalled and unverified, {self.trust}): "
+                f"lateral acceleration {self.acceleration:.3g} m/s^2, jerk {self.jerk:.3g} m/s^3, roll rate {np.degrees(self.roll_rate):.3g} deg/s")
 
     def __str__(self):
         return self.message
@@ -89,7 +89,8 @@ def curve_transition_comfort(time, lateral, roll_rate, start, end, posture="stan
     _, turning = sliding_mean(found.time, found.values["roll_rate"], _WINDOW, found.step)
     lag = int(round(_WINDOW / found.step))
     jerk = (steady[lag:] - steady[:-lag]) / _WINDOW
-    maxima = (_largest(middle, steady, start, end + _LATER), _largest(middle[:-lag], jerk, start - _BEFORE, end), _largest(middle, turning, start, end))
+    maxima = (_largest(middle, steady, start, end + _LATER), _largest(middle[:-lag], jerk, start - _BEFORE, end),
+              _largest(middle, turning, start, end))
     return CurveComfort(_percent(table[posture], *maxima), *maxima, posture, table[posture]["trust"])
 
 

@@ -78,7 +78,8 @@ class Derailment:
         return plot_sliding(self, quantity, axes=axes)
 
 
-def derailment(run, *, wheels="*.Q", wheel_load=None, k1=None, vehicle_speed=None, radius=None, sections=None, order=4, zero_phase=True, distance=None, speed=None):
+def derailment(run, *, wheels="*.Q", wheel_load=None, k1=None, vehicle_speed=None, radius=None, sections=None, order=4, zero_phase=True,
+               distance=None, speed=None):
     """Assess the wheel-rail forces of a run.
 
     Parameters
@@ -198,7 +199,8 @@ def _static(run, wheels, given, smooth):
     """Static load of each wheel (N), and what was assumed."""
     given = run.info.extra.get("wheel_loads") if given is None else given
     if given is None:
-        return {wheel: float(np.median(smooth[f"{wheel}.Q"])) for wheel in wheels}, ["static wheel loads Q0 are the medians of Q: none were given (wheel_load=...)"]
+        medians = {wheel: float(np.median(smooth[f"{wheel}.Q"])) for wheel in wheels}
+        return medians, ["static wheel loads Q0 are the medians of Q: none were given (wheel_load=...)"]
     loads = {wheel: given for wheel in wheels} if np.ndim(given) == 0 and not isinstance(given, dict) else given
     for wheel in wheels:
         if wheel not in loads:
@@ -213,4 +215,5 @@ def _quasi_static_Y(radius):
         raise CriterionError("radius = 0 m: give the radius of the curve, or leave it out on straight track")
     fixed, offset, slope = limits("Y_quasi_static"), limits("Y_quasi_static_offset"), limits("Y_quasi_static_slope")
     # the newer rule a + b/R gives more than the older 60 kN below 350 m only; the larger one is the later allowance
-    return offset.derived(max(fixed.value, offset.value + slope.value / abs(radius)), "N", "60 kN, in narrow curves 30 kN + 10500 kN m/R", fixed, slope)
+    value = max(fixed.value, offset.value + slope.value / abs(radius))
+    return offset.derived(value, "N", "60 kN, in narrow curves 30 kN + 10500 kN m/R", fixed, slope)

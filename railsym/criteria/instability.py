@@ -114,7 +114,8 @@ class Instability:
         return plot_instability(self, axes=axes)
 
 
-def instability(source, signal=None, *, channels=CHANNELS, limit=None, cycles=None, band=None, order=4, zero_phase=True, distance=None, speed=None):
+def instability(source, signal=None, *, channels=CHANNELS, limit=None, cycles=None, band=None, order=4, zero_phase=True, distance=None,
+                speed=None):
     """Judge the running stability by the bogie frames' lateral accelerations above the axleboxes.
 
     Parameters

@@ -98,7 +98,8 @@ def instability_rms(source, signal=None, *, method="sum_Y", channels=None, frequ
         frequency = dominant_frequency(found, _SEARCH).frequency_hz
     half = limits("half_band").value
     if not frequency > half:
-        raise CriterionError(f"f0 = {frequency:.4g} Hz: the band f0 +- {half:g} Hz needs f0 above {half:g} Hz; for slower motions look at the channels themselves")
+        raise CriterionError(f"f0 = {frequency:.4g} Hz: the band f0 +- {half:g} Hz needs f0 above {half:g} Hz; "
+                             "for slower motions look at the channels themselves")
     band_pass = Butterworth(frequency - half, frequency + half, order, zero_phase)
     length = limits("rms_length").value if length is None else float(length)
     step = limits("rms_step").value if step is None else float(step)

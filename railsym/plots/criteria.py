@@ -81,7 +81,8 @@ def plot_sliding(result, quantity, *, axes=None):
         for side in (-bound, bound):
             panel.axhline(side, color=GREY, linewidth=1.0, linestyle="--" if worst.limit.trusted else ":")
     text = f"limit {limits[0]:.3g}{' ' * bool(unit)}{unit} ({worst.limit.trust}{'' if worst.limit.trusted else ', recalled'})"
-    panel.annotate(text, (1.0, limits[0]), (0, 2), xycoords=("axes fraction", "data"), textcoords="offset points", ha="right", fontsize=8, color="#555555")
+    panel.annotate(text, (1.0, limits[0]), (0, 2), xycoords=("axes fraction", "data"), textcoords="offset points", ha="right", fontsize=8,
+                   color="#555555")
     panel.margins(x=0.01)
     tidy(panel, "distance, m", f"{quantity}{', ' + unit if unit else ''}, 2 m mean")
     panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=7.5, frameon=False)
