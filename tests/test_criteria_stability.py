@@ -83,7 +83,8 @@ def test_a_run_is_judged_by_axlebox():
     found = criteria.instability(a_run())
     assert [box.unstable for box in found.axleboxes] == [False, True]
     text = str(found)
-    assert text.startswith("unstable: 6 consecutive cycles over 8 m/s^2, 4 to 8 Hz at 1 of 2 places, first bogie2.above_wheelset4_right.ay from t = 4.0")
+    assert text.startswith("unstable: 6 consecutive cycles over 8 m/s^2, 4 to 8 Hz at 1 of 2 places, "
+                           "first bogie2.above_wheelset4_right.ay from t = 4.0")
     assert "limit 8 m/s^2: V1, UIC 518" in text and "stable" in text
     assert found.assessed[1].verdict.startswith("over the limit 8 m/s^2 (V1)")
     panels = found.plot()
@@ -136,7 +137,8 @@ def test_rms_by_the_simplified_method():
     found = criteria.instability_rms(a_run(), method="acceleration", bogie_mass=6000.0, frequency=5.0)
     assert found.assessed[0].limit.value == pytest.approx((12 - 6 / 5) / 2) and len(found.assessed) == 2
     assert criteria.instability_rms(a_run(), method="acceleration").assessed[0].limit is None
-    for arguments, message in (({"frequency": 1.5}, "needs f0 above 2 Hz"), ({"bogie_mass": 70e3}, "no meaning above 60 t"), ({"method": "x"}, "there are 'sum_Y'")):
+    for arguments, message in (({"frequency": 1.5}, "needs f0 above 2 Hz"), ({"bogie_mass": 70e3}, "no meaning above 60 t"),
+                               ({"method": "x"}, "there are 'sum_Y'")):
         with pytest.raises(CriterionError, match=message):
             criteria.instability_rms(a_run(), **({"method": "acceleration"} | arguments))
     with pytest.raises(CriterionError, match="distance is needed"):
@@ -163,3 +165,30 @@ def test_markers_of_the_shipped_vehicles():
     assert criteria.frame_markers(rs.load_vehicle("cooperrider"))["bogie1.above_wheelset2_left"][1][1] == -0.75
     with pytest.raises(CriterionError, match="joined to no body"):
         criteria.frame_markers(rs.load_vehicle("wheelset"))
+
+
+def test_a_vehicle_at_its_linear_critical_speed():
+    """The matrix exponential of the linear train hunts at the frequency that the eigenvalues give, and the criterion sees its amplitude."""
+    from scipy.linalg import expm
+
+    vehicle, contact = rs.load_vehicle("pendolino").configured("noAS_K"), rs.LinearContact(conicity=0.2)
+    critical = rs.critical_speed(vehicle, 0.2)
+    lin = rs.linearise(vehicle, float(critical.speed), contact)
+    place = {name: k for k, name in enumerate(lin.states)}
+    step, state = expm(4e-3 * lin.A), np.zeros(len(place))
+    state[place["wheelset1.y"]] = 2e-3
+    states = np.empty((5000, state.size))
+    for row in states:
+        row[:] = state
+        state = step @ state
+    values = {}
+    for name, (body, position) in criteria.frame_markers(vehicle).items():
+        lateral, yaw = (lin.A[place[f"{body}.{c}.rate"]] for c in ("y", "yaw"))
+        values[f"{name}.ay"] = states @ (lateral + (position - vehicle.body(body).position)[0] * yaw)
+    run = rs.Run.from_arrays(np.arange(5000) * 4e-3, values, dict.fromkeys(values, "m/s^2"), speed=float(critical.speed)).between(10.0, 20.0)
+    found = criteria.hunting_frequency(run)
+    # at the critical speed the other motions have died out after 10 s, and a steady sine is left
+    assert found.frequency_hz == pytest.approx(float(critical.frequency_hz), abs=5e-3) and len(found.agreeing) == 8
+    for level, unstable in ((8.2, True), (7.8, False)):
+        scaled = rs.Run(run.time, {n: run[n] * level / found.amplitude for n in run.channels}, run.channels, run.info)
+        assert criteria.instability(scaled).unstable == unstable

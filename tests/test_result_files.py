@@ -88,7 +88,8 @@ def test_csv_of_another_program(tmp_path):
     path.write_text("\ufefftime [s], frame.ay [m/s^2]\r\n0, 1.5\r\n0.01,-2\r\n", encoding="utf-8")
     run = rs.Run.from_csv(path)
     np.testing.assert_array_equal(run["frame.ay"], [1.5, -2.0])
-    for text, message in (("t,a\n1,2\n", "heading 't' is not a name with a unit"), ("# x\n", "no heading line"), ("t [s],a [m]\n", r"'time \[s\]' is needed"),
+    for text, message in (("t,a\n1,2\n", "heading 't' is not a name with a unit"), ("# x\n", "no heading line"),
+                          ("t [s],a [m]\n", r"'time \[s\]' is needed"),
                           ("time [s],a [m]\n1,2,3\n", "the table cannot be read"), ("time [s],a [m]\n1,x\n", "the table cannot be read")):
         path.write_text(text)
         with pytest.raises(ResultFileError, match=message):

@@ -148,11 +148,12 @@ def instability(source, signal=None, *, channels=CHANNELS, limit=None, cycles=No
 
     Notes
     -----
-    A record shorter than the required cycles cannot become unstable. Within about one period of the ends the filter has seen only one side.
+    A record shorter than the required cycles cannot become unstable. Within about one period of the ends the filter has seen one
+    side only.
     """
     bound = limits("frame_acceleration")
     if limit is not None:
-        bound = Limit("frame_acceleration", float(limit), "m/s^2", "given", "given by the caller", origin="given by the caller", meaning=bound.meaning)
+        bound = Limit("frame_acceleration", float(limit), "m/s^2", "given", *["given by the caller"] * 3, bound.meaning)
     cycles = int(limits("cycles").value if cycles is None else cycles)
     band = (limits("lowest_frequency").value, limits("highest_frequency").value) if band is None else tuple(map(float, band))
     found = gather(source, signal, channels, "m/s^2", distance=distance, speed=speed, name="frame.ay")

@@ -104,7 +104,8 @@ def plot_spectrum(spectrum, *, axes=None):
     panel.axvspan(*np.minimum(spectrum.band, high), color="#f2f2f2", zorder=0)
     panel.plot(spectrum.frequency, spectrum.amplitude, color="#0072B2", linewidth=1.2)
     panel.set_xlim(0.0, high)
-    panel.set_ylim(0.0, None)
+    shown = spectrum.amplitude[spectrum.frequency <= high]
+    panel.set_ylim(0.0, 1.08 * max(shown.max(), spectrum.dominant_amplitude if found else 0.0) or None)
     if found:
         panel.plot(spectrum.dominant_hz, spectrum.dominant_amplitude, "o", color="#D55E00", markersize=5)
         panel.annotate(f"{spectrum.dominant_hz:.2f} Hz, {spectrum.dominant_amplitude:.3g} {unit}",
