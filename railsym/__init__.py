@@ -12,6 +12,7 @@ from importlib import import_module
 from types import ModuleType
 
 _MODULE_OF = {
+    "ChannelWriter": "results",
     "ContactPair": "contact_pair",
     "LinearContact": "contact",
     "LinearModel": "linear_model",
@@ -21,7 +22,6 @@ _MODULE_OF = {
     "RailsymError": "errors",
     "Run": "results",
     "Vehicle": "vehicle",
-    "ChannelWriter": "results",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",

@@ -261,6 +261,15 @@ def test_a_killed_run_keeps_its_blocks_and_the_old_file(tmp_path):
         rs.Run.from_netcdf(path)
 
 
+def test_a_run_that_wrote_nothing_yet_can_be_read(tmp_path):
+    writer = ChannelWriter(tmp_path / "run.nc", CHANNELS, INFO)
+    writer.write(0.0, [1.0, 2.0, 3.0])
+    assert len(rs.Run.from_netcdf(writer.part)) == 0
+    writer.flush()
+    assert len(rs.Run.from_netcdf(writer.part)) == 1
+    writer.finish()
+
+
 def test_a_writer_refuses_what_does_not_fit(tmp_path):
     with ChannelWriter(tmp_path / "run.nc", CHANNELS) as writer:
         with pytest.raises(ResultError, match=r"\(1, 3\) is needed"):

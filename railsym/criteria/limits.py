@@ -142,7 +142,8 @@ def limits(name=None):
     if name is None:
         return dict(_all())
     if name not in _all():
-        near = difflib.get_close_matches(name, _all(), n=3)
+        lower = {known.lower(): known for known in _all()}
+        near = [lower[found] for found in difflib.get_close_matches(name.lower(), lower, n=3)]
         raise CriterionError(f"there is no limit {name!r}{'; near: ' + ', '.join(near) if near else ''}; there are {', '.join(_all())}")
     return _all()[name]
 

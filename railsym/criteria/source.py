@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from railsym.criteria.errors import CriterionError
+from railsym.results.errors import UnknownChannelError
 from railsym.results.run import Run, uniform_step
 
 DISTANCE, SPEED = "s", "V"
@@ -83,7 +84,7 @@ def gather(source, signal, patterns, unit, *, distance=None, speed=None, needs_d
     if isinstance(source, Run):
         if signal is not None:
             raise CriterionError("give a run, or time and signal; not both")
-        names = source.channels.require(*((patterns,) if isinstance(patterns, str) else tuple(patterns)))
+        names = _named(source, (patterns,) if isinstance(patterns, str) else tuple(patterns))
         for channel in names:
             if source.unit(channel) != unit:
                 raise CriterionError(f"channel {channel} is in {source.unit(channel)}; {unit} is needed")
@@ -96,6 +97,13 @@ def gather(source, signal, patterns, unit, *, distance=None, speed=None, needs_d
     check(time, values)
     step = uniform_step(time)
     return Signals(time, step, _distance(source, time, step, distance, speed, needs_distance), values)
+
+
+def _named(run, patterns):
+    try:
+        return run.channels.require(*patterns)
+    except UnknownChannelError as error:
+        raise UnknownChannelError(f"{error}; this criterion looks for {', '.join(patterns[:4])}, other channels can be given to it") from error
 
 
 def check(time, values):
