@@ -87,6 +87,45 @@ int rs_creep_forces(int law, int strips, int cells, int contacts, const double *
                     double *slopes);
 
 enum { RS_OUT_OF_TABLE = 6 };
-enum { RS_ZONES = 3, RS_PLACE_SIZE = 4 };
+enum { RS_ZONES = 3, RS_PLACE_SIZE = 4, RS_TABLE_SHAPE = 11 };
 
 typedef struct rs_contact_table rs_contact_table;
+
+typedef struct {
+	int rail_count;
+	double rail_step;              /* m of arc between points */
+	const double *rail_y;          /* rail_count, m, as the rail lies */
+	const double *rail_z;          /* m, 0 at the top, down */
+	const double *rail_cosine;     /* of the rail's slope */
+	const double *rail_sine;
+	int wheel_count;
+	double wheel_start, wheel_step; /* m, along the axle */
+	const double *wheel_radius_at; /* wheel_count, m */
+	const double *wheel_slope_at;  /* dr/dy */
+	double wheel_radius;           /* m, r0 */
+	double spacing;                /* m, tape circle from the wheelset's centre */
+} rs_surfaces;
+
+typedef struct {
+	double load[5];      /* N, elastic normal force, > 0; then its slopes over y, roll, drop, yaw; likewise: */
+	double x[5];         /* m, place of the contact ahead of the wheelset's centre, in the wheelset's axes */
+	double across[5];    /* m, from the wheelset's centre along the axle, + to the field */
+	double radius[5];    /* m, below the axle */
+	double angle[5];     /* rad, contact plane to the track plane, positive as at a flange */
+	double a[5];         /* m, semi-axis along x */
+	double b[5];         /* m, semi-axis across */
+	int zone;            /* 0 tread ... */
+} rs_patch;
+
+int rs_rigid_contact(const rs_surfaces *from, int n, const double *place, double *contact);
+int rs_contact_table_check(const double *shape);
+int rs_contact_table_build(const rs_surfaces *from, const double *shape, const double *cuts, const int *parts,
+                           double modulus, rs_contact_table **made, int *failures);
+int rs_contact_table_of_arrays(const double *shape, const double *axes, const double *const *closure,
+                               const double *const *field, rs_contact_table **made);
+void rs_contact_table_shape(const rs_contact_table *table, double *shape, double *axes);
+void rs_contact_table_arrays(const rs_contact_table *table, int zone, double *closure, double *field);
+void rs_contact_table_free(rs_contact_table *table);
+int rs_contact_lookup(const rs_contact_table *table, const double *place, rs_patch *patch, int *count, int *beyond);
+int rs_contact_lookup_many(const rs_contact_table *table, int n, const double *place, rs_patch *patch, int *count,
+                           int *failed, int *beyond);

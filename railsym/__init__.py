@@ -14,6 +14,7 @@ from types import ModuleType
 _MODULE_OF = {
     "ChannelWriter": "results",
     "ContactPair": "contact_pair",
+    "ContactTable": "contact_table",
     "LinearContact": "contact",
     "LinearModel": "linear_model",
     "Material": "creep",
@@ -28,6 +29,7 @@ _MODULE_OF = {
     "equivalent_conicity": "conicity",
     "linear_model": "linear",
     "linearise": "linear",
+    "load_contact_table": "contact_table",
     "load_profile": "profiles",
     "load_vehicle": "vehicle",
     "parameter_map": "stability_map",
