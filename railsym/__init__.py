@@ -12,6 +12,7 @@ from importlib import import_module
 from types import ModuleType
 
 _MODULE_OF = {
+    "ChannelWriter": "results",
     "ConicalContact": "wheel_rail",
     "ContactPair": "contact_pair",
     "ContactTable": "contact_table",
@@ -25,7 +26,6 @@ _MODULE_OF = {
     "Run": "results",
     "Simulation": "simulation",
     "Vehicle": "vehicle",
-    "ChannelWriter": "results",
     "WheelRail": "wheel_rail",
     "creep_forces": "creep",
     "creep_laws": "creep",

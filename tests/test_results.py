@@ -176,7 +176,10 @@ def test_a_spectrum_that_cannot_be_says_what_is_needed():
 def test_plots_draw_what_was_asked():
     run = a_run()
     panels = run.plot(["*.Y", "bogie1.y"])
-    assert [panel.get_ylabel() for panel in panels] == ["m", "N"]
+    assert [panel.get_ylabel() for panel in panels] == ["y, m", "Y, kN"]
     assert [len(panel.lines) for panel in panels] == [1, 2]
-    np.testing.assert_array_equal(panels[1].lines[1].get_ydata(), run["wheelset1.right.Y"])
-    assert run.spectrum("bogie1.y").plot().get_ylabel() == "amplitude, m"
+    np.testing.assert_array_equal(panels[1].lines[1].get_ydata(), 1e-3 * run["wheelset1.right.Y"])
+    time = np.arange(3000) * 4e-3
+    between = rs.Run.from_arrays(time, {"a": np.sin(2 * np.pi * 5.54 * time)}, {"a": "m"}).spectrum("a", band=(0.5, 12.0))
+    panel = between.plot()
+    assert panel.get_ylabel() == "amplitude, m" and panel.get_ylim()[1] > between.dominant_amplitude > between.amplitude.max()

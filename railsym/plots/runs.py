@@ -11,7 +11,7 @@ _MOST_NAMED = 8
 
 
 def plot_run(run, channels="*", *, axes=None, over="time"):
-    """One panel a unit; the legend names the channels.
+    """One panel a quantity (what stands behind the last dot, such as Q or ay) and unit; the legend names the channels.
 
     Parameters
     ----------
@@ -19,35 +19,52 @@ def plot_run(run, channels="*", *, axes=None, over="time"):
     channels : str or sequence of str
         Names or patterns.
     axes : array of matplotlib Axes, optional
-        One a unit.
+        One a panel.
     over : str
         ``"time"`` or a channel, such as ``"s"``.
 
     Returns
     -------
-    ndarray of matplotlib Axes, shape (units,)
+    ndarray of matplotlib Axes, shape (panels,)
     """
     names = run.channels.require(*((channels,) if isinstance(channels, str) else channels))
-    names = [name for name in names if name != over]
-    units = list(dict.fromkeys(run.unit(name) for name in names))
-    panels = new_axes(axes, len(units), size=(7.2, 1.2 + 2.0 * len(units)), sharex=True)[:, 0]
-    for panel, unit in zip(panels, units):
-        _draw(panel, run, [name for name in names if run.unit(name) == unit], over)
-        tidy(panel, ylabel=unit)
+    groups = {}
+    for name in names:
+        if name != over:
+            groups.setdefault((name.rpartition(".")[2], run.unit(name)), []).append(name)
+    panels = new_axes(axes, len(groups), size=(7.2, 1.2 + 1.9 * len(groups)), sharex=True)[:, 0]
+    for panel, ((quantity, unit), group) in zip(panels, groups.items()):
+        shown, factor = shown_unit(unit)
+        _draw(panel, run[over], [factor * run[name] for name in group], group)
+        tidy(panel, ylabel=f"{quantity}, {shown}" if shown else quantity)
     panels[-1].set_xlabel(f"{over}, {run.unit(over)}")
     title = " ".join(part for part in (run.info.vehicle, run.info.configuration) if part)
     panels[0].set_title(f"{title}: {run.info.ending}" if title else str(run.info.ending), loc="left", fontsize=10, pad=9)
     return panels
 
 
-def _draw(panel, run, names, over):
+def unit_text(unit):
+    """Unit as it is written on an axis; a pure number has none."""
+    return "" if unit == "-" else unit.replace("^2", "²").replace("*", " ")
+
+
+def shown_unit(unit):
+    """Unit as it is shown over time, and the factor to it: forces in kN."""
+    return ("k" + unit_text(unit), 1e-3) if unit in ("N", "N*m") else (unit_text(unit), 1.0)
+
+
+def solid_styles(names):
+    """As `line_styles`, but solid and without markers while the colours suffice: dashes of a dense vibration are hard to see."""
+    styles = line_styles(names)
+    plain = {"marker": None, "linewidth": 0.9}
+    return {name: style | plain | ({"linestyle": "-"} if k < _MOST_NAMED else {}) for k, (name, style) in enumerate(styles.items())}
+
+
+def _draw(panel, along, values, names):
     common = _common(names)
-    for name, style in line_styles(names).items():
-        panel.plot(run[over], run[name], label=name[len(common):], **(style | {"marker": None, "linewidth": 1.1}))
+    for (name, style), array in zip(solid_styles(names).items(), values):
+        panel.plot(along, array, label=name[len(common):], **style)
     panel.margins(x=0.01)
-    if len(names) == 1:
-        panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=7.5, frameon=False)
-        return
     shown, labels = panel.get_legend_handles_labels()
     if len(names) > _MOST_NAMED:
         shown, labels = shown[:_MOST_NAMED], [*labels[:_MOST_NAMED - 1], f"{labels[_MOST_NAMED - 1]} and {len(names) - _MOST_NAMED} more"]
@@ -68,7 +85,7 @@ def _common(names):
 
 
 def plot_spectrum(spectrum, *, axes=None):
-    """Amplitude over frequency up to four times the dominant one (or the whole band), with the dominant frequency marked.
+    """Amplitude over frequency up to the end of the band (or four times the dominant one), with the dominant frequency marked.
 
     Parameters
     ----------
@@ -81,16 +98,18 @@ def plot_spectrum(spectrum, *, axes=None):
     """
     panel = new_axes(axes, size=(6.4, 3.4))[0, 0]
     found = np.isfinite(spectrum.dominant_hz)
-    high = min(spectrum.frequency[-1], max(spectrum.band[1] if spectrum.band[1] < spectrum.frequency[-1] else 0.0,
-                                           4 * spectrum.dominant_hz if found else spectrum.band[1]))
+    whole = spectrum.band[1] > 0.99 * spectrum.frequency[-1]
+    high = min(spectrum.frequency[-1], 4 * spectrum.dominant_hz) if whole and found else min(spectrum.frequency[-1], 1.1 * spectrum.band[1])
+    unit = unit_text(spectrum.unit)
     panel.axvspan(*np.minimum(spectrum.band, high), color="#f2f2f2", zorder=0)
     panel.plot(spectrum.frequency, spectrum.amplitude, color="#0072B2", linewidth=1.2)
     panel.set_xlim(0.0, high)
-    panel.set_ylim(0.0, None)
+    shown = spectrum.amplitude[spectrum.frequency <= high]
+    panel.set_ylim(0.0, 1.08 * max(shown.max(), spectrum.dominant_amplitude if found else 0.0) or None)
     if found:
         panel.plot(spectrum.dominant_hz, spectrum.dominant_amplitude, "o", color="#D55E00", markersize=5)
-        panel.annotate(f"{spectrum.dominant_hz:.2f} Hz, {spectrum.dominant_amplitude:.3g} {spectrum.unit}",
+        panel.annotate(f"{spectrum.dominant_hz:.2f} Hz, {spectrum.dominant_amplitude:.3g} {unit}",
                        (spectrum.dominant_hz, spectrum.dominant_amplitude), (7, -2), textcoords="offset points", fontsize=8.5, va="top")
         panel.axvline(spectrum.dominant_hz, color=GREY, linewidth=0.6, linestyle=":")
-    tidy(panel, "frequency, Hz", f"amplitude, {spectrum.unit}", spectrum.channel)
+    tidy(panel, "frequency, Hz", f"amplitude, {unit}" if unit else "amplitude", spectrum.channel)
     return panel

@@ -36,4 +36,4 @@ def optional(package, what):
         return import_module(package)
     except ImportError as error:
         raise MissingPackageError(f"{what} needs the package {package}, which is not installed ({error}): pip install 'railsym[io]'; "
-                                  "CSV and .mat files need no further package") from error
+                                  "netCDF, CSV and .mat files need no further package") from error

@@ -65,16 +65,14 @@ def replacing(path):
     except BaseException as error:
         with suppress(OSError):
             part.unlink()
-        # netCDF4 reports a full disk as RuntimeError
-        if isinstance(error, ResultFileError) or not isinstance(error, (OSError, RuntimeError)):
+        if isinstance(error, ResultFileError) or not isinstance(error, OSError):
             raise
         raise ResultFileError(f"{path} was not written: {reason(error)}; {kept(path)}") from error
 
 
 def reason(error):
-    """What the operating system or the netCDF library says."""
-    text = getattr(error, "strerror", None) or str(error) or type(error).__name__
-    return f"{text} (disk full?)" if "HDF error" in text else text
+    """What the operating system says."""
+    return getattr(error, "strerror", None) or str(error) or type(error).__name__
 
 
 def kept(path):

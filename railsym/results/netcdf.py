@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs in netCDF-4 files and as xarray datasets."""
+"""Runs in netCDF files and as xarray datasets."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from railsym.results import files
+from railsym.results import files, layout
 from railsym.results.channel import TIME, Channel, Channels
 from railsym.results.errors import ResultFileError, optional
-from railsym.results.metadata import Ending, RunInfo
+from railsym.results.metadata import Ending
 from railsym.results.run import Run
-from railsym.results.writer import FORMAT, FORMAT_NAME, INFO, ChannelWriter
+from railsym.results.writer import ChannelWriter
 
-_BLOCK = 16384
+_BLOCK = 4096
+_HDF5 = b"\x89HDF"
 
 
 def save(run, path):
@@ -52,16 +53,19 @@ def load(path, patterns="*"):
     UnknownChannelError
         A pattern fits no channel.
     """
+    from scipy.io import netcdf_file
+
     path = Path(path)
     _check_there(path)
-    netcdf = optional("netCDF4", "a netCDF file")
     try:
-        with netcdf.Dataset(path) as dataset:
-            return _run(dataset, path, (patterns,) if isinstance(patterns, str) else tuple(patterns))
-    except (OSError, RuntimeError) as error:
+        with netcdf_file(path, "r", mmap=path.stat().st_size > 0) as file:
+            return _run(file, path, (patterns,) if isinstance(patterns, str) else tuple(patterns))
+    except (OSError, TypeError, ValueError, IndexError, AssertionError) as error:
         if isinstance(error, ResultFileError):
             raise
-        raise ResultFileError(f"{path} cannot be read as netCDF: {getattr(error, 'strerror', None) or error}") from error
+        with open(path, "rb") as start:
+            other = "it is netCDF-4 (HDF5), which railsym does not write; xarray reads it" if start.read(4) == _HDF5 else str(error)
+        raise ResultFileError(f"{path} cannot be read as netCDF: {other}") from error
 
 
 def to_xarray(run):
@@ -70,10 +74,8 @@ def to_xarray(run):
     variables = {}
     for name, channel in run.channels.items():
         variables[name] = (TIME, np.array(run[name]), {"units": channel.unit, "long_name": channel.description, "place": channel.place})
-    info = run.info
-    attributes = {INFO: info.to_json(), FORMAT: FORMAT_NAME, "ending": str(info.ending)}
-    attributes |= {key: getattr(info, key) for key in ("vehicle", "configuration", "track", "creep_law", "railsym_version", "message")}
-    return xarray.Dataset(variables, coords={TIME: (TIME, np.array(run.time), {"units": "s"})}, attrs=attributes)
+    plain = {name: value.decode().rstrip() for name, value in layout.attributes(run.info).items()}
+    return xarray.Dataset(variables, coords={TIME: (TIME, np.array(run.time), {"units": "s"})}, attrs=plain | {layout.INFO: run.info.to_json()})
 
 
 def _check_there(path):
@@ -84,26 +86,28 @@ def _check_there(path):
     raise ResultFileError(f"there is no file {path}{hint}")
 
 
-def _run(dataset, path, patterns):
-    dataset.set_auto_maskandscale(False)
-    attributes = dataset.ncattrs()
-    if FORMAT not in attributes or INFO not in attributes or TIME not in dataset.variables:
-        raise ResultFileError(f"{path} is netCDF, but not a run of railsym: it has no attribute {FORMAT}; there are {', '.join(attributes) or 'no attributes'}")
-    if dataset.getncattr(FORMAT) != FORMAT_NAME:
-        raise ResultFileError(f"{path} has the format {dataset.getncattr(FORMAT)!r}, this railsym reads {FORMAT_NAME!r}: a newer railsym may be needed")
-    channels = Channels(Channel(name, v.units, v.long_name, v.place) for name, v in dataset.variables.items() if name != TIME)
+def _run(file, path, patterns):
+    given = file._attributes
+    if layout.FORMAT not in given or layout.INFO not in given or TIME not in file.variables:
+        raise ResultFileError(f"{path} is netCDF, but not a run of railsym: it has no attribute {layout.FORMAT}; there are "
+                              f"{', '.join(given) or 'no attributes'}")
+    if given[layout.FORMAT].decode() != layout.FORMAT_NAME:
+        raise ResultFileError(f"{path} has the format {given[layout.FORMAT].decode()!r}, this railsym reads {layout.FORMAT_NAME!r}: "
+                              "a newer one may be needed")
+    channels = Channels(_channel(name, variable._attributes) for name, variable in file.variables.items() if name != TIME)
     names = tuple(channels) if patterns == ("*",) else channels.require(*patterns)
-    info = RunInfo.from_json(dataset.getncattr(INFO))
-    time = np.asarray(dataset.variables[TIME][:])
-    values = {name: np.asarray(dataset.variables[name][:]) for name in names}
+    info = layout.read_info(given[layout.INFO])
+    time, values = _native(file.variables[TIME]), {name: _native(file.variables[name]) for name in names}
     if info.status == "running":
-        time, values, info = _unfinished(time, values, info)
+        detail = "the program ended before the file was finished; what it had not written yet is missing"
+        info = info.ended(Ending("interrupted", time=float(time[-1]) if time.size else None, detail=detail))
     return Run(time, values, [channels[name] for name in names], info)
 
 
-def _unfinished(time, values, info):
-    """What a writer that was never finished left: the samples that all channels have."""
-    count = int(np.argmin(np.append((np.diff(time, prepend=-np.inf) > 0) & np.isfinite(time), False)))
-    last = float(time[count - 1]) if count else None
-    ending = Ending("interrupted", time=last, detail="the program ended before the file was finished; its last block may be missing")
-    return time[:count], {name: array[:count] for name, array in values.items()}, info.ended(ending)
+def _channel(name, details):
+    return Channel(name, *(details.get(key, b"").decode() for key in ("units", "long_name", "place")))
+
+
+def _native(variable):
+    """A copy in the byte order of the machine: the file's memory map closes."""
+    return np.array(variable.data, dtype=float)

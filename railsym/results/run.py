@@ -215,7 +215,7 @@ class Run:
         return to_xarray(self)
 
     def to_netcdf(self, path):
-        """Save as netCDF-4, bit for bit (package netCDF4). A file of that name is replaced when the new one is complete."""
+        """Save as netCDF (classic format), bit for bit. A file of that name is replaced when the new one is complete."""
         from railsym.results.netcdf import save
 
         save(self, path)
@@ -268,8 +268,8 @@ def uniform_step(time):
     off = np.abs(np.diff(time) - step)
     worst = int(np.argmax(off))
     if off[worst] > _UNIFORM * step + 4 * np.spacing(max(abs(time[0]), abs(time[-1]))):
-        raise ResultError(f"time is not uniform: a step of {time[worst + 1] - time[worst]:.6g} s at t = {time[worst]:.6g} s, {step:.6g} s in the mean; "
-                          f"use run.resampled({np.ceil(1 / np.diff(time).min()):g}) (Hz)")
+        raise ResultError(f"time is not uniform: a step of {time[worst + 1] - time[worst]:.6g} s at t = {time[worst]:.6g} s, "
+                          f"{step:.6g} s in the mean; use run.resampled({np.ceil(1 / np.diff(time).min()):g}) (Hz)")
     return step
 
 

@@ -106,7 +106,8 @@ def _check_band(name, band, step, count):
         raise ResultError(f"{name} is sampled at {1 / step:.6g} Hz; a band up to {high:g} Hz needs at least {2 * high:g} Hz")
     # a Hann window's main lobe is two lines to either side
     if high - low < 2.0 / (step * count):
-        raise ResultError(f"{name} is {step * count:.4g} s long; to look between {low:g} and {high:g} Hz at least {2.0 / (high - low):.4g} s are needed")
+        raise ResultError(f"{name} is {step * count:.4g} s long; to look between {low:g} and {high:g} Hz "
+                          f"at least {2.0 / (high - low):.4g} s are needed")
 
 
 def _dominant(moving, step, frequency, lines, band):

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from railsym.results import files
-from railsym.results.channel import TIME, Channels
-from railsym.results.errors import ResultError, ResultFileError, optional
+from railsym.results import files, layout
+from railsym.results.channel import Channels
+from railsym.results.errors import ResultError, ResultFileError
 from railsym.results.metadata import Ending, RunInfo
 
-INFO, FORMAT, FORMAT_NAME = "railsym_run", "railsym_format", "run 1"
 _BLOCK = 4096
+_MOST = 2 ** 32 - 2    # records that the header can count
 
 
 class ChannelWriter:
@@ -27,9 +27,9 @@ class ChannelWriter:
                 writer.write(time, values)
             writer.finish(Ending("completed"))
 
-    After each block written the file can be read, also if the program is killed then: `Run.from_netcdf` reads ``run.nc.part``
-    and calls it interrupted. A file that had the name before stays as it was until then, and what a killed run left is not
-    overwritten (``.part2`` is next).
+    What was written stays readable when the program is killed or the disk is full: `Run.from_netcdf` reads ``run.nc.part`` and calls it
+    interrupted. A file that had the name before stays as it was until then, and what a killed run left is not overwritten
+    (``.part2`` is next).
 
     Parameters
     ----------
@@ -38,18 +38,14 @@ class ChannelWriter:
     info : RunInfo, optional
     block : int
         Samples kept in memory and written at once.
-    compress : bool
-        Deflate, without loss.
 
     Raises
     ------
     ResultFileError
-        A path that cannot be written, a full disk; what was written before stays in ``PATH.part``.
-    MissingPackageError
-        The package netCDF4 is not installed.
+        A path that cannot be written, a full disk.
     """
 
-    def __init__(self, path, channels, info=None, *, block=_BLOCK, compress=False):
+    def __init__(self, path, channels, info=None, *, block=_BLOCK):
         self.path, self.info = Path(path), RunInfo() if info is None else info
         self.channels = channels if isinstance(channels, Channels) else Channels(channels)
         if int(block) < 1:
@@ -59,7 +55,8 @@ class ChannelWriter:
         self.samples = self._held = 0
         self._last = -np.inf
         self._buffer = np.empty((int(block), len(self.channels) + 1))
-        self._dataset = self._guarded(self._create, compress)
+        self._file = None
+        self._guarded(self._create)
 
     def write(self, time, values):
         """Append samples.
@@ -78,22 +75,24 @@ class ChannelWriter:
         ResultFileError
             The disk is full.
         """
-        if self._dataset is None:
+        if self._file is None:
             raise ResultError(f"{self.path} is closed; nothing can be added")
-        time = np.atleast_1d(np.asarray(time, dtype=float))
-        values = np.asarray(values, dtype=float).reshape(time.size, -1) if np.ndim(values) < 2 else np.asarray(values, dtype=float)
+        time, values = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
+        if time.ndim == 0:
+            time, values = time[None], values[None]
         if time.ndim != 1 or values.shape != (time.size, len(self.channels)):
             raise ResultError(f"times of shape {time.shape} and values of shape {values.shape}: ({time.size}, {len(self.channels)}) is needed, "
                               "a column a channel")
         before = np.concatenate(([self._last], time[:-1]))
-        if not (np.isfinite(time) & (time > before)).all():
-            at = int(np.argmin(np.isfinite(time) & (time > before)))
+        good = np.isfinite(time) & (time > before)
+        if not good.all():
+            at = int(np.argmin(good))
             raise ResultError(f"time does not increase: {before[at]:.9g} s is followed by {time[at]:.9g} s")
         self._append(time, values)
 
     def flush(self):
         """Write what is held in memory, so that it can be read from the file."""
-        if self._dataset is not None:
+        if self._file is not None:
             self._guarded(self._write_held)
 
     def finish(self, ending=None, message=None):
@@ -109,7 +108,7 @@ class ChannelWriter:
         ------
         ResultFileError
         """
-        if self._dataset is None:
+        if self._file is None:
             return
         self.flush()
         self.info = self.info.ended(ending or Ending("completed", time=self._last if self.samples else None), message)
@@ -121,27 +120,15 @@ class ChannelWriter:
     def __exit__(self, kind, error, trace):
         if kind is None:
             self.finish()
-        elif self._dataset is not None:
+        elif self._file is not None:
             detail = "by the user" if issubclass(kind, KeyboardInterrupt) else f"{kind.__name__}: {error}"
             self.finish(Ending("interrupted", time=self._last if self.samples or self._held else None, detail=detail))
 
-    def _create(self, compress):
-        netcdf = optional("netCDF4", "a netCDF file")
-        dataset = netcdf.Dataset(self.part, "w", format="NETCDF4")
-        dataset.createDimension(TIME, None)
-        chunk = (len(self._buffer),)
-        more = {"compression": "zlib", "complevel": 1, "shuffle": True} if compress else {}
-        variable = dataset.createVariable(TIME, "f8", (TIME,), chunksizes=chunk, fill_value=False, **more)
-        variable.units = "s"
-        for channel in self.channels.values():
-            variable = dataset.createVariable(channel.name, "f8", (TIME,), chunksizes=chunk, fill_value=False, **more)
-            variable.set_var_chunk_cache(size=2 * self._buffer.itemsize * chunk[0])  # the default, 16 MB and more a channel, fills up
-            variable.setncatts({"units": channel.unit, "long_name": channel.description, "place": channel.place})
-        dataset.set_auto_maskandscale(False)
-        dataset.setncattr_string(FORMAT, FORMAT_NAME)
-        _note(dataset, replace(self.info, ending=Ending("running")))
-        dataset.sync()
-        return dataset
+    def _create(self):
+        head, self._room = layout.header(self.channels, replace(self.info, ending=Ending("running")))
+        self._file = open(self.part, "xb", buffering=0)
+        self._start = len(head)
+        _write_all(self._file, head)
 
     def _append(self, time, values):
         start = 0
@@ -158,36 +145,55 @@ class ChannelWriter:
     def _write_held(self):
         if not self._held:
             return
-        place = slice(self.samples, self.samples + self._held)
-        # time last: its length is then never ahead of a channel's
-        for column, name in [*enumerate(self.channels, start=1), (0, TIME)]:
-            self._dataset.variables[name][place] = np.ascontiguousarray(self._buffer[:self._held, column])
-        self._dataset.sync()
+        if self.samples + self._held > _MOST:
+            raise OSError(f"the netCDF classic format counts at most {_MOST} samples")
+        width = layout.record_type(self.channels).itemsize
+        self._file.seek(self._start + self.samples * width)
+        _write_all(self._file, self._buffer[:self._held].astype(">f8").tobytes())
+        # counted only when they are all there
+        self._file.seek(layout.RECORDS)
+        _write_all(self._file, (self.samples + self._held).to_bytes(4, "big"))
         self.samples += self._held
         self._held = 0
 
     def _close(self):
-        _note(self._dataset, self.info)
-        self._dataset.close()
-        self._dataset = None
+        try:
+            head, _ = layout.header(self.channels, self.info, self._room)
+        except ValueError:
+            self._move(*layout.header(self.channels, self.info))
+        else:
+            self._file.seek(0)
+            _write_all(self._file, head[:layout.RECORDS] + self.samples.to_bytes(4, "big") + head[layout.RECORDS + 4:])
+        os.fsync(self._file.fileno())
+        self._file.close()
+        self._file = None
         os.replace(self.part, self.path)
 
-    def _guarded(self, work, *arguments):
+    def _move(self, head, room):
+        """Copy the records behind a longer header, for metadata that grew beyond the room left for them."""
+        new = files.free_part(self.path)
+        with open(self.part, "rb") as old, open(new, "xb", buffering=0) as target:
+            _write_all(target, head[:layout.RECORDS] + self.samples.to_bytes(4, "big") + head[layout.RECORDS + 4:])
+            old.seek(self._start)
+            while block := old.read(2 ** 20):
+                _write_all(target, block)
+        self._file.close()
+        os.replace(new, self.part)
+        self._file, self._start, self._room = open(self.part, "r+b", buffering=0), len(head), room
+
+    def _guarded(self, work):
         try:
-            return work(*arguments)
-        except (OSError, RuntimeError) as error:
-            if isinstance(error, ResultFileError):
-                raise
-            dataset, self._dataset = getattr(self, "_dataset", None), None
-            with suppress(Exception):
-                dataset.close()
-            raise ResultFileError(f"{self.path}: writing stopped after {self.samples} samples: {files.reason(error)}; what was written before may be read "
-                                  f"from {self.part}; {files.kept(self.path)}") from error
+            work()
+        except OSError as error:
+            file, self._file = self._file, None
+            with suppress(OSError, AttributeError):
+                file.close()
+            raise ResultFileError(f"{self.path}: writing stopped after {self.samples} samples: {files.reason(error)}; "
+                                  f"what was written before can be read from {self.part}; {files.kept(self.path)}") from error
 
 
-def _note(dataset, info):
-    """Metadata as one line of JSON for railsym, and the main ones in plain attributes for other programs."""
-    dataset.setncattr_string(INFO, info.to_json())
-    for name in ("vehicle", "configuration", "track", "creep_law", "railsym_version", "message"):
-        dataset.setncattr_string(name, getattr(info, name))
-    dataset.setncattr_string("ending", str(info.ending))
+def _write_all(file, data):
+    """Write all bytes: one call may write a part only, when the disk is nearly full."""
+    view = memoryview(data)
+    while view:
+        view = view[file.write(view):]
