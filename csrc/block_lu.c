@@ -83,8 +83,8 @@ static RS_ALWAYS_INLINE int pivot_column(const double *A, int size, int k)
 	return best;
 }
 
-/* A = A^-1. Returns 0 where a pivot vanishes against the row it stands in. */
-static RS_ALWAYS_INLINE int invert(double *A, int size)
+/* A = A^-1 with exchanges. Returns 0 where a pivot vanishes against the row it stands in. */
+static int invert_with_exchanges(double *A, int size)
 {
 	double largest[RS_BLOCK] = {0.0};
 	int with[RS_BLOCK];
@@ -115,6 +115,54 @@ static RS_ALWAYS_INLINE int invert(double *A, int size)
 			swap(A + k, A + with[k], size, RS_BLOCK);
 	return 1;
 }
+
+#if defined(__GNUC__)
+/* A = A^-1 without exchanges, in registers. Returns 0, A as it was, where a pivot is below a hundredth of its row: then the
+ * growth of what is left would cost digits. */
+static RS_ALWAYS_INLINE int invert_as_it_stands(double *A, const int size)
+{
+	column8 c[RS_BLOCK];
+	double smallest = 1.0;
+	for (int j = 0; j < size; j++)
+		c[j] = ((const column8 *)A)[j];
+#pragma GCC unroll 8
+	for (int k = 0; k < size; k++) {
+		double pivot = c[k][k], inverse = 1.0 / pivot, row = 0.0;
+#pragma GCC unroll 8
+		for (int j = 0; j < size; j++)
+			row = j > k && fabs(c[j][k]) > row ? fabs(c[j][k]) : row;
+		double ratio = fabs(pivot) / row;
+		smallest = ratio < smallest ? ratio : pivot == pivot ? smallest : -1.0;
+		c[k][k] = 1.0;
+		c[k] *= inverse;
+#pragma GCC unroll 8
+		for (int j = 0; j < size; j++) {
+			double factor = c[j][k];
+			if (j == k)
+				continue;
+			c[j][k] = 0.0;
+			c[j] -= factor * c[k];
+		}
+	}
+	if (!(smallest > 0.01))
+		return 0;
+	for (int j = 0; j < size; j++)
+		((column8 *)A)[j] = c[j];
+	return 1;
+}
+
+static RS_ALWAYS_INLINE int invert(double *A, int size)
+{
+	if ((size == 6 && invert_as_it_stands(A, 6)) || (size == 8 && invert_as_it_stands(A, 8)))
+		return 1;
+	return invert_with_exchanges(A, size);
+}
+#else
+static int invert(double *A, int size)
+{
+	return invert_with_exchanges(A, size);
+}
+#endif
 
 RS_CLONES
 int rs_block_lu_factor(rs_block_lu *lu, int *worst)

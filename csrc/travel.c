@@ -164,10 +164,22 @@ static void set_body(const rs_travel *travel, const rs_moved_body *body)
 	}
 }
 
-static void set_pair(const rs_travel *travel, const rs_moved_pair *pair)
+/* Two frames on one straight: their pose depends neither on place nor on speed. */
+static int on_a_straight(const rs_track_frame *first, const rs_track_frame *second)
+{
+	for (int k = 0; k < 3; k++)
+		if (first->turning[k] != 0.0 || second->turning[k] != 0.0)
+			return 0;
+	return !memcmp(first->attitude, second->attitude, sizeof first->attitude);
+}
+
+static void set_pair(const rs_travel *travel, rs_moved_pair *pair)
 {
 	rs_track_pose pose;
-	int lanes = rs_kernel_lanes();
+	int lanes = rs_kernel_lanes(), still = on_a_straight(travel->frame + pair->first, travel->frame + pair->second);
+	if (still && pair->still)
+		return;
+	pair->still = still;
 	rs_track_pose_of(travel->frame + pair->first, travel->frame + pair->second, travel->V, pair->offset1, pair->offset2, &pose);
 	for (int k = 0; k < 3; k++) {
 		pair->to[k * lanes] = pose.D[k];

@@ -30,6 +30,7 @@ typedef struct {
 typedef struct {
 	int first, second;
 	double offset1[3], offset2[3];
+	int still;                /* 1: as the inputs were last written, both frames lay straight and level with each other */
 	double *to;
 } rs_moved_pair;
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from railsym import _core_integrator as core
-from railsym.errors import ContactError
+from railsym.errors import ContactError, CoreError
 from railsym.results.metadata import Ending
 
 
@@ -48,11 +48,12 @@ def _wheel_failure(parts, status, where):
     """Derailment and other ends that a wheel is to blame for; None where no wheel is."""
     try:
         parts.wheels._core.explain(status, float(parts.speed.at(where["time"])))
+    except CoreError:
+        return None  # the wheels are not to blame
     except ContactError as error:
         text = str(error)
-        name = text.partition(":")[0].replace(", ", ".")
-        left = status == core.OUT_OF_TABLE and "lateral shift" in text or "drop" in text
-        return Ending("derailed" if left else "not_converged", wheel=name, **where, detail=text)
-    except Exception:  # noqa: BLE001 -- the wheels are not to blame
-        return None
+        wheel = getattr(error, "wheel", text.partition(":")[0]).replace(", ", ".")
+        left = status == core.OUT_OF_TABLE and "lateral shift" in text
+        advice = "" if left else f"; a shorter step (dt={parts.integrator.step / 4:g}) or a smoother start may keep it inside"
+        return Ending("derailed" if left else "not_converged", wheel=wheel, **where, detail=text + advice)
     return None

@@ -97,8 +97,9 @@ class Simulation:
         ``LinearContact()`` by default; None: no wheel touches a rail.
     dt : float
         s
-    start : float
-        m, arc length of the vehicle's centre at t = 0.
+    start : float, optional
+        m, arc length of the vehicle's centre at t = 0. Without it the foremost body stands at s = 0: behind it the track goes on
+        as it begins, without irregularities.
     initial : dict of str to float, or (q, u), optional
         ``{"wheelset1.y": 3e-3, "car.y.rate": 0.1}``, SI; the rest of the vehicle rolls at its design position.
     channels : str or sequence of str, optional
@@ -122,12 +123,13 @@ class Simulation:
     ending : Ending
     """
 
-    def __init__(self, vehicle, *, speed, track=None, contact="linear", dt=1e-3, start=0.0, initial=None, channels=None, rate=None,
+    def __init__(self, vehicle, *, speed, track=None, contact="linear", dt=1e-3, start=None, initial=None, channels=None, rate=None,
                  markers=None, rho=RHO, tolerance=TOLERANCE, drive="held", **forces):
         from railsym.contact import LinearContact
 
         _check_numbers(dt=dt, rho=rho, tolerance=tolerance)
-        profile = SpeedProfile.of(speed, start)
+        foremost = max((body.position[0] for body in vehicle.bodies), default=0.0)
+        profile = SpeedProfile.of(speed, -foremost if start is None else start)
         contact = LinearContact() if isinstance(contact, str) and contact == "linear" else contact
         self.parts = Assembled(vehicle, contact, track, profile, dt, rho, tolerance, drive, forces)
         self.available = catalogue(self.parts, markers or {})
