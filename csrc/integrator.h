@@ -20,7 +20,8 @@
  *             block      second: number of the body of each coordinate, 0 ... blocks - 1, at most eight each
  *             step       s, > 0
  *             rho        0 ... 1
- *             tolerance  m/s^2 (rad/s^2 on a lever of 1 m): acceleration that an iteration may leave wrong
+ *             tolerance  m/s^2 (rad/s^2 on a lever of 1 m): acceleration that an iteration may leave wrong; a thousandth of
+ *                        the largest acceleration where that is less, but not below 1e-6 unless the tolerance is
  *   Returned  the integrator, or NULL (no memory, or a value or block outside its range)
  * rs_integrator_start    state at a time; accelerations and rates of internal states follow from it
  *   Status    RS_OK, RS_SINGULAR (mass matrix), RS_NOT_FINITE, RS_NOT_CONVERGED (rate of an internal state),
@@ -70,6 +71,8 @@ struct rs_integrator {
 	double *d;                 /* n */
 	double factored;           /* s, tau of the factors; 0: none */
 	double contraction;        /* of an iteration with these factors */
+	double largest;            /* m/s^2, acceleration at the last step */
+	double seen;               /* the same as the last step measured it; 0: it did not */
 	double *kink;
 	int kinks, next_kink;
 	rs_channel *channel;

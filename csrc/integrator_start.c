@@ -92,6 +92,6 @@ int rs_integrator_begin(rs_integrator *it, double time)
 	memcpy(it->v, it->u, (size_t)it->n * sizeof(double));
 	memcpy(it->before, it->a, (size_t)it->second * sizeof(double));
 	memcpy(it->before + it->second, it->u + it->second, (size_t)(it->n - it->second) * sizeof(double));
-	it->before_step = 0.0;
+	it->before_step = it->largest = it->seen = 0.0;
 	return status;
 }

@@ -3,7 +3,7 @@
  *
  * An iteration changes q_f by d, u_f by d/tau, a_m by d/tau^2. It has converged when what is left,
  * d c/(1 - c) with c the contraction seen with these factors, is below tolerance tau^2: the
- * acceleration left wrong is then below the tolerance. Newton with kept factors converges
+ * acceleration left wrong is then below the tolerance, or a thousandth of the largest one if that is less. Newton with kept factors converges
  * linearly; one that contracts less than fourfold gets new factors, and a step that does not
  * converge with factors of its own state has failed.
  */
@@ -15,6 +15,12 @@
 
 /* Contraction above which new factors are cheaper than more iterations; iterations with one set of factors; sets a step. */
 static const double SLOW = 0.25;
+
+/* Contraction above which the next step begins with new slopes of the wheels. */
+static const double RENEW = 0.01;
+
+/* Tolerance against the largest acceleration, and its least value, m/s^2: far above what rounding of forces leaves. */
+static const double FRACTION = 1e-3, LEAST_TOLERANCE = 1e-6;
 
 /* A step of one iteration sees no contraction: factors serve less well from step to step, and rounding may look like quick
  * convergence. So what was seen last is taken to grow, until a second iteration looks again. */
@@ -74,7 +80,7 @@ static void accept(rs_integrator *it, double h)
 	int n = it->n, second = it->second;
 	const double *restrict q = it->system->model->state, *restrict u = q + n, *restrict a = u + n;
 	double *restrict qn = it->q, *restrict un = it->u, *restrict an = it->a, *restrict vn = it->v, *restrict before = it->before;
-	double to_end = 1.0 / it->af, to_new = 1.0 / it->am;
+	double to_end = 1.0 / it->af, to_new = 1.0 / it->am, largest[8] = {0.0};
 	for (int k = 0; k < second; k++) {
 		before[k] = an[k];
 		qn[k] += to_end * (q[k] - qn[k]);
@@ -87,6 +93,14 @@ static void accept(rs_integrator *it, double h)
 		qn[k] += to_end * (q[k] - qn[k]);
 		un[k] += to_new * (u[k] - un[k]);
 	}
+	for (int k = 0; k + 8 <= second; k += 8)
+		for (int i = 0; i < 8; i++)
+			largest[i] = fabs(an[k + i]) > largest[i] ? fabs(an[k + i]) : largest[i];
+	it->largest = 0.0;
+	for (int i = 0; i < 8; i++)
+		it->largest = largest[i] > it->largest ? largest[i] : it->largest;
+	for (int k = second / 8 * 8; k < second; k++)
+		it->largest = fabs(an[k]) > it->largest ? fabs(an[k]) : it->largest;
 	it->before_step = h;
 }
 
@@ -158,10 +172,18 @@ static int fail(rs_integrator *it, int status)
 	return status;
 }
 
+/* Acceleration that may be left wrong: small motions are not to be lost in what large ones may have. */
+static double tolerable(const rs_integrator *it)
+{
+	double relative = FRACTION * it->largest, least = it->tolerance < LEAST_TOLERANCE ? it->tolerance : LEAST_TOLERANCE;
+	relative = relative > least ? relative : least;
+	return relative < it->tolerance ? relative : it->tolerance;
+}
+
 /* Iterations with one set of factors: RS_OK, RS_NOT_CONVERGED (new factors, please), or worse. */
 static int iterate(rs_integrator *it, const scheme *with)
 {
-	double before = INFINITY, allowed = it->tolerance * with->tau * with->tau;
+	double before = INFINITY, allowed = tolerable(it) * with->tau * with->tau;
 	for (int k = 0; k < ITERATIONS; k++) {
 		int status = k ? look(it, with, KEPT) : RS_OK;
 		if (status)
@@ -173,6 +195,7 @@ static int iterate(rs_integrator *it, const scheme *with)
 			return fail(it, RS_NOT_FINITE);
 		change(it, with);
 		it->contraction = k ? size / before : AGEING * it->contraction;
+		it->seen = k ? it->contraction : it->seen;
 		double c = it->contraction = it->contraction > LEAST ? it->contraction : LEAST;
 		if (size <= allowed || (c < 1.0 && size * c <= allowed * (1.0 - c)))
 			return RS_OK;
@@ -194,7 +217,8 @@ static int advance(rs_integrator *it, double from, double h)
 	predict(it, h);
 	int status = rs_integrator_move(it, from + at * h);
 	/* a change of tau in the last digit, from the difference of two times, is no reason for new factors */
-	int factors = fabs(it->factored - with.tau) > 1e-7 * with.tau ? ALL : KEPT;
+	int factors = fabs(it->factored - with.tau) > 1e-7 * with.tau ? ALL : it->wheels && it->seen > RENEW ? WHEELS : KEPT;
+	it->seen = 0.0;
 	for (int set = 0; set < SETS && !status; set++) {
 		status = look(it, &with, factors);
 		if (!status)
