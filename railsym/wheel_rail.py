@@ -100,14 +100,14 @@ class ConicalContact:
     young_modulus, poisson : float
         N/m^2, -; of both bodies.
     limits : tuple of 3 float
-        Largest lateral shift m, roll rad and drop m; beyond it is an error, as with a table.
+        Largest lateral shift m, roll rad and penetration m; beyond it is an error, as with a table.
     """
 
     zones: tuple = (Cone(0.05),)
     wheel_radius: float = 0.46
     young_modulus: float = 2.1e11
     poisson: float = 0.28
-    limits: tuple = (0.02, 0.1, 0.02)
+    limits: tuple = (0.02, 0.1, 0.01)
 
     def __post_init__(self):
         if not 1 <= len(self.zones) <= 3:
@@ -117,7 +117,25 @@ class ConicalContact:
         """Shape of one wheel for the C library; both sides are alike."""
         from railsym._core_wheel_rail import cones
 
-        return cones(self.wheel_radius, [self._zone(zone) for zone in self.zones], self.limits, self.zones[0].half_spacing)
+        def outside(number, place):
+            value = (side * place[0], side * place[1], self._penetration(place))[number]
+            return ("lateral shift", "roll", "penetration")[number], value, (0.0 if number == 2 else -self.limits[number], self.limits[number])
+
+        return cones(self.wheel_radius, [self._zone(zone) for zone in self.zones], self.limits, self.zones[0].half_spacing, outside)
+
+    def _penetration(self, place):
+        """Largest of the zones, m, at a place (y, roll, drop, yaw) of a right wheel; csrc/wheel_rail/cones.c."""
+        y, roll, drop, yaw = place
+        axle = np.array([-np.sin(yaw) * np.cos(roll), np.cos(yaw) * np.cos(roll), np.sin(roll)])
+        square = 1.0 - axle[0] ** 2
+        deepest = -np.inf
+        for zone in map(self._zone, self.zones):
+            across, down = zone["rail_y"] - y, zone["rail_z"] + self.wheel_radius - drop
+            height = (down * axle[1] - across * axle[2]) * np.sqrt(1.0 - (zone["slope"] * axle[0]) ** 2 / square)
+            along = zone["slope"] * (across * axle[1] + down * axle[2]) / square
+            gap = height / np.sqrt(square) + along - zone["slope"] * zone["b0"] - zone["radius"]
+            deepest = max(deepest, zone["rail_radius"] - gap / np.hypot(1.0, zone["slope"]))
+        return deepest
 
     def _zone(self, zone):
         angle = np.arctan(zone.slope)
@@ -190,8 +208,8 @@ class WheelRail:
     Parameters
     ----------
     vehicle : Vehicle or list of WheelsetPlace
-    contact : object, or pair of them (left, right)
-        Contact table or `ConicalContact`: anything with ``wheel_shape(side)``.
+    contact : ContactPair, ContactTable or ConicalContact, or pair of them (left, right)
+        What else has ``wheel_shape(side)`` serves as well.
     law : str
         Creep law, see `railsym.creep_laws`.
     grid : pair of int
@@ -289,10 +307,25 @@ class WheelRail:
 
         Raises
         ------
+        OutOfTableError
+            A wheel outside its contact table.
         ContactError
-            Speed not positive; a wheel outside its contact table; a state that is not finite.
+            Speed not positive; a state that is not finite.
         """
         return self._core.rows(q, u, speed, w, rail, seed)
+
+    def explain(self, status, speed, time=None):
+        """Raise the error that a status of rs_wheel_rail_rows stands for; for callers of the C function.
+
+        Parameters
+        ----------
+        status : int
+        speed : float
+            m/s, as it was given.
+        time : float, optional
+            s, for the message.
+        """
+        self._core.explain(status, speed, time)
 
     def outputs(self):
         """`WheelOutputs` of the last `rows`."""
