@@ -21,6 +21,7 @@ from railsym.hertz import contact_modulus, hertz
 from railsym.kalker import kalker_coefficients
 
 DECADES, NODES_A_DECADE = 3, 64  # of a/b on both sides of 1: cubics between err by 1e-5, the table by 5e-3
+LARGEST_MISFIT = 5e-3  # m, between the height of a wheelset's centre and the wheel radius of its contact: wear, not another wheel
 CONTACT_DAMPING = 1.0  # s/m, assumed: 3 % of critical for a wheelset of 1.8 t on Hertzian contact at 66 kN a wheel
 
 
@@ -254,6 +255,7 @@ class WheelRail:
         if not np.all(self._wheel_values["weight"] > 0.0):
             raise ContactError(f"kalker_weight must be positive, got {kalker_weight!r}")
         self.sink = np.zeros(wheels)
+        self._height = np.array([_height(one, shape) for one in self.wheelsets for shape in shapes])
         self._core = self._made(shapes)
         loads = loads if wheel_loads is None else wheel_loads
         if loads is not None:
@@ -338,7 +340,7 @@ class WheelRail:
         return WheelOutputs(**found, **{name: patch[:, :, PATCH[name]] for name in ("load", "x", "across", "radius", "angle", "a", "b")})
 
     def _sinks(self, loads):
-        """Drops at which each wheel, centred, carries its load."""
+        """Displacements downwards at which each wheel, centred, carries its load."""
         from scipy.optimize import brentq
 
         def lack(drop, wheel):
@@ -350,12 +352,13 @@ class WheelRail:
             return float(np.sum(found.load[wheel] * np.cos(found.angle[wheel]))) - loads[wheel]
 
         def sink(wheel):
-            low, high = 0.0, 1e-5
+            start, reach = self._height[wheel], 1e-5
+            low = high = start
             try:
                 while lack(low, wheel) > 0.0:
-                    low = 2.0 * low - 1e-5
+                    low, reach = start - reach, 2.0 * reach
                 while lack(high, wheel) < 0.0:
-                    high *= 2.0
+                    high, reach = start + reach, 2.0 * reach
             except ContactError as error:
                 raise ContactError(f"the contact cannot carry the static load of {self._core.names[wheel]}, {loads[wheel]:.6g} N: {error}") from None
             return brentq(lack, low, high, args=(wheel,), xtol=1e-15, rtol=1e-14)
@@ -376,6 +379,15 @@ def _places(vehicle):
     bodies = [body for body, side in rolling.model.wheels if side < 0]
     places = [WheelsetPlace(b.name, start[b.name], (0.0, b.position[1], b.position[2])) for b in bodies]
     return places, vehicle.contact, rolling.preload.wheel_loads
+
+
+def _height(one, shape):
+    """How far the wheelset's centre lies above the height of its wheel's radius, m."""
+    height = -one.offset[2] - shape.r0
+    if not abs(height) <= LARGEST_MISFIT:
+        raise ContactError(f"{one.name}: its centre is {-one.offset[2]:.6g} m above the rails, the contact is for wheels of {shape.r0:.6g} m; "
+                           "make the contact for the vehicle's wheel_radius")
+    return height
 
 
 def _material(given):
