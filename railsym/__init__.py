@@ -12,7 +12,7 @@ from importlib import import_module
 from types import ModuleType
 
 _MODULE_OF = {
-    "ConicalContact": "wheel_rail",
+    "ConicalContact": "conical_contact",
     "ContactPair": "contact_pair",
     "ContactTable": "contact_table",
     "LinearContact": "contact",

@@ -10,7 +10,8 @@ import railsym as rs
 from railsym._core import lib
 from railsym.contact_table import OutOfTableError
 from railsym.errors import ContactError
-from railsym.wheel_rail import Cone, ConicalContact, WheelRail, WheelsetPlace
+from railsym.conical_contact import Cone, ConicalContact
+from railsym.wheel_rail import WheelRail, WheelsetPlace
 
 
 @pytest.fixture(scope="module")
