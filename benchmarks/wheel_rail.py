@@ -56,6 +56,7 @@ def seconds(forces, blocks):
 def table_of_a_cone(wave=0.0):
     """Contact table of a cone on a rail with a round head; ``wave`` (1/m): amplitude of a curvature of the cone, 60 mm long."""
     from railsym._core_contact import Surfaces, Table
+    from railsym.contact_table import ContactTable, WheelTable
     from railsym.hertz import contact_modulus
 
     angle, step = np.arctan(_SLOPE), 2e-4
@@ -67,4 +68,5 @@ def table_of_a_cone(wave=0.0):
     k = 2.0 * np.pi / 0.06
     wheel = (across[0], 5e-4, _RADIUS - _SLOPE * away + wave / k**2 * np.sin(k * away), -_SLOPE + wave / k * np.cos(k * away))
     nodes = (-6e-3, 1e-3, 13, -4e-3, 1e-3, 9, 8, 1, 3e-4, _RADIUS, _SPACING)  # railsym._core_contact.SHAPE
-    return Table.built(Surfaces(rail, wheel, _RADIUS, _SPACING), nodes, (np.inf, -np.inf), (1,), contact_modulus(2.1e11, 0.28))
+    made = Table.built(Surfaces(rail, wheel, _RADIUS, _SPACING), nodes, (np.inf, -np.inf), (1,), contact_modulus(2.1e11, 0.28))
+    return ContactTable(WheelTable("left", made), WheelTable("right", made), 2.0 * _SPACING, _RADIUS, _RADIUS)

@@ -201,7 +201,7 @@ typedef struct {
 typedef struct {
 	int cones;             /* 1 ... RS_ZONES, tread first */
 	double r0;             /* m, height of the wheelset's centre over the top of rail at drop = 0 */
-	double limit[3];       /* largest |y| m, |roll| rad, |drop| m; yaw has none */
+	double limit[3];       /* largest |y| m, |roll| rad, penetration m; yaw has none */
 	rs_cone cone[3];
 } rs_contact_cones;
 

@@ -13,7 +13,7 @@ from types import ModuleType
 
 _MODULE_OF = {
     "ChannelWriter": "results",
-    "ConicalContact": "wheel_rail",
+    "ConicalContact": "conical_contact",
     "ContactPair": "contact_pair",
     "ContactTable": "contact_table",
     "LinearContact": "contact",

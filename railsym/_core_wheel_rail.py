@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from railsym._core import CREEP_LAWS, _check, _doubles, _vector, ffi, lib
-from railsym._core_contact import Table
+from railsym.contact_pair import ContactPair
+from railsym.contact_table import ContactTable, OutOfTableError
 from railsym.errors import ContactError
 
-PLACE = (("lateral shift", "m"), ("roll", "rad"), ("drop", "m"), ("yaw", "rad"))
+PLACE = ("lateral shift", "roll", "drop", "yaw")
 WHEEL = {"Y": lib.RS_WHEEL_Y, "Q": lib.RS_WHEEL_Q, "X": lib.RS_WHEEL_X, "t_gamma": lib.RS_WHEEL_TGAMMA,
          "patches": lib.RS_WHEEL_PATCHES}
 PATCH = {"load": lib.RS_PATCH_LOAD, "xi": lib.RS_PATCH_XI, "eta": lib.RS_PATCH_XI + 1, "phi": lib.RS_PATCH_XI + 2,
@@ -33,7 +34,7 @@ class Shape:
     half_spacing : float
         m, lateral place of the tape circle from the wheelset's centre, and of the rail's head from the track's.
     outside : callable
-        (number of the quantity that left its range, place (4)) -> what to say of it.
+        (number of the quantity that left its range, place (4)) -> its name, value and limits, as `OutOfTableError` takes them.
     keep : object
     """
 
@@ -45,7 +46,7 @@ class Shape:
     keep: object
 
 
-def cones(r0, zones, limits, half_spacing=0.75):
+def cones(r0, zones, limits, half_spacing=0.75, outside=None):
     """Shape of cones on round rails.
 
     Parameters
@@ -53,50 +54,37 @@ def cones(r0, zones, limits, half_spacing=0.75):
     zones : list of dict
         Fields of rs_cone in interface.h, 1 to 3 zones.
     limits : sequence of float, length 3
-        Largest |lateral shift| m, |roll| rad, |drop| m.
+        Largest |lateral shift| m, |roll| rad, penetration m.
     """
     memory = ffi.new("rs_contact_cones *")
     memory.cones, memory.r0, memory.limit = len(zones), r0, list(limits)
     for cone, zone in zip(memory.cone, zones):
         for name, value in zone.items():
             setattr(cone, name, value)
-
-    def outside(number, place):
-        name, unit = PLACE[number]
-        return _beyond(name, place[number], unit, -limits[number], limits[number])
-
     return Shape(lib.RS_CONTACT_CONES, memory, r0, half_spacing, outside, memory)
 
 
-def table(made):
-    """Shape of a contact table, a `railsym._core_contact.Table`."""
+def table(wheel):
+    """Shape of a wheel's contact table, a `railsym.contact_table.WheelTable`."""
+    made, sign = wheel.core, -1.0 if wheel.side == "left" else 1.0
     r0 = made.value("wheel_radius")
 
     def outside(number, place):
-        if number == 2:
-            return (f"drop {place[2]:.4f} m presses it into its rail by more than the {made.value('deepest'):.2g} m of the contact table; "
-                    "is the wheelset falling, or its mass too large?")
-        name, unit = (("lateral shift at the contact", "m"), ("roll", "rad"))[number]
-        key = ("shift", "roll")[number]
-        start, step, nodes = (made.value(part) for part in (f"{key}_start", f"{key}_step", f"{key}s"))
-        value, low, high = place[1] if number else place[0] - r0 * place[1], start + step, start + (nodes - 2) * step
-        if low <= value <= high:
-            return f"at {name} {value:.4f} {unit} it meets its rail beyond an end of one of the profiles"
-        return _beyond(name, value, unit, low, high)
+        name = ("lateral shift", "roll", "penetration")[number]
+        value = (sign * (place[0] - r0 * place[1]), sign * place[1], None)[number]
+        return name, wheel._depth(place) if value is None else value, wheel.limits[name]
 
-    return Shape(lib.RS_CONTACT_TABLE, made.pointer, r0, made.value("spacing"), outside, made)
-
-
-def _beyond(name, value, unit, low, high):
-    return f"{name} {value:.4f} {unit} is outside the contact table [{low:.4f}, {high:.4f}] {unit}"
+    return Shape(lib.RS_CONTACT_TABLE, made.pointer, r0, made.value("spacing"), outside, wheel)
 
 
 def shape_of(contact, side):
-    """Shape of one wheel (side -1, 1) of a contact: a Table, or anything with ``wheel_shape(side)``."""
-    if isinstance(contact, Table):
-        return table(contact)
+    """Shape of one wheel (side -1, 1) of a contact: a ContactPair or its table, or anything with ``wheel_shape(side)``."""
+    if isinstance(contact, ContactPair):
+        contact = contact.table()
+    if isinstance(contact, ContactTable):
+        return table(contact.left if side < 0 else contact.right)
     if not hasattr(contact, "wheel_shape"):
-        raise ContactError(f"contact is {type(contact).__name__}; wheel-rail forces need a contact table or a ConicalContact")
+        raise ContactError(f"contact is {type(contact).__name__}; wheel-rail forces need a ContactPair, its table, or a ConicalContact")
     return contact.wheel_shape(side)
 
 
@@ -147,21 +135,21 @@ class WheelRailCore:
             self.explain(status, speed)
         return rows, blocks
 
-    def explain(self, status, speed):
+    def explain(self, status, speed, time=None):
         """Raise the error that a status of rs_wheel_rail_rows stands for."""
         wheel, variable, value, place = ffi.new("int *"), ffi.new("int *"), ffi.new("double *"), np.empty(lib.RS_PLACE_SIZE)
         lib.rs_wheel_rail_failure(self.pointer, wheel, variable, value, _doubles(place))
-        number, value = variable[0], value[0]
+        number, value, at = variable[0], value[0], "" if time is None else f" at t = {time:.6g} s"
         if status == lib.RS_BAD_SPEED:
-            raise ContactError(f"speed is {speed!r} m/s; creepages are slips over the speed, so it must be positive and finite")
+            raise ContactError(f"speed is {speed!r} m/s{at}; creepages are slips over the speed, so it must be positive and finite")
         where = self.names[wheel[0]]
         if status == lib.RS_OUT_OF_TABLE and number < len(PLACE):
-            raise ContactError(f"{where}: {self._shapes[wheel[0]].outside(number, place)}")
+            raise _left_table(where, *self._shapes[wheel[0]].outside(number, place), time)
         if status == lib.RS_OUT_OF_TABLE:
-            raise ContactError(f"{where}: a contact ellipse with a/b = {np.exp(value):.4g} is outside the creep coefficients' range, 0.001 to 1000")
+            raise ContactError(f"{where}{at}: a contact ellipse with a/b = {np.exp(value):.4g} is outside the creep coefficients' range, 0.001 to 1000")
         if status == lib.RS_NOT_FINITE:
-            what = f"its {PLACE[number][0]} against the rail is {value}" if 0 <= number < len(PLACE) else "its forces are not finite"
-            raise ContactError(f"{where}: {what}; look at the state of its wheelset")
+            what = f"its {PLACE[number]} against the rail is {value}" if 0 <= number < len(PLACE) else "its forces are not finite"
+            raise ContactError(f"{where}{at}: {what}; look at the state of its wheelset")
         _check(status, where)
 
     def outputs(self):
@@ -170,6 +158,14 @@ class WheelRailCore:
         patch = np.empty((2 * self.count, lib.RS_ZONES, lib.RS_PATCH_OUTPUTS))
         lib.rs_wheel_rail_outputs(self.pointer, _doubles(wheel), _doubles(patch))
         return wheel, patch
+
+
+def _left_table(where, quantity, value, limits, time):
+    error = OutOfTableError(where, quantity, float(value), limits, time)
+    if limits[0] <= value <= limits[1]:  # the table ends there as well, where a zone meets the rail beyond an end of a profile
+        error.args = (f"{where}: at {quantity} {value:.4g} it meets its rail beyond an end of one of the profiles"
+                      + ("" if time is None else f", t = {time:.6g} s"),)
+    return error
 
 
 def _fill_wheel(wheel, values):

@@ -10,17 +10,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from railsym.creep import Material, _checked_grid, _known
 from railsym.errors import ContactError
-from railsym.hertz import contact_modulus, hertz
 from railsym.kalker import kalker_coefficients
 
 DECADES, NODES_A_DECADE = 3, 64  # of a/b on both sides of 1: cubics between err by 1e-5, the table by 5e-3
+LARGEST_MISFIT = 5e-3  # m, between the height of a wheelset's centre and the wheel radius of its contact: wear, not another wheel
 CONTACT_DAMPING = 1.0  # s/m, assumed: 3 % of critical for a wheelset of 1.8 t on Hertzian contact at 66 kN a wheel
 
 
@@ -51,82 +51,6 @@ def kalker_table(poisson):
     cubics = np.concatenate(parts)
     cubics.setflags(write=False)
     return -DECADES * np.log(10.0), step, cubics
-
-
-@dataclass(frozen=True)
-class Cone:
-    """One zone of a `ConicalContact`: a cone on a rail whose head is a circle.
-
-    Attributes
-    ----------
-    slope : float
-        Conicity: the radius falls by it towards the field; tangent of the contact angle at rest.
-    half_spacing : float
-        m, lateral distance of the contact from the track's centre line, centred.
-    radius : float
-        m, of the cone at that place.
-    rail_radius : float
-        m, of the rail's head; the rail touches the cone there when the wheelset is centred at drop 0.
-    gap : float
-        m, distance of the rail from the cone along the normal instead, centred at drop 0.
-    """
-
-    slope: float
-    half_spacing: float = 0.75
-    radius: float = 0.46
-    rail_radius: float = 0.3
-    gap: float = 0.0
-
-    def __post_init__(self):
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not np.isfinite(value) or (field.name in ("half_spacing", "radius", "rail_radius") and value <= 0.0):
-                raise ContactError(f"cone: {field.name} is {value!r}; it must be finite, and a radius or spacing positive")
-
-
-@dataclass(frozen=True)
-class ConicalContact:
-    """Wheels of cones on rails with round heads, in closed form: the contact without a table.
-
-    For verification, and for a conicity without profiles. Displacements and rotations are full; the load is Hertz's
-    on the penetration of both surfaces, the ellipse that of rest scaled with the load.
-
-    Parameters
-    ----------
-    zones : tuple of Cone
-        Tread first; at most three.
-    wheel_radius : float
-        r0, m: height of the wheelset's centre over the top of rail at drop 0.
-    young_modulus, poisson : float
-        N/m^2, -; of both bodies.
-    limits : tuple of 3 float
-        Largest lateral shift m, roll rad and drop m; beyond it is an error, as with a table.
-    """
-
-    zones: tuple = (Cone(0.05),)
-    wheel_radius: float = 0.46
-    young_modulus: float = 2.1e11
-    poisson: float = 0.28
-    limits: tuple = (0.02, 0.1, 0.02)
-
-    def __post_init__(self):
-        if not 1 <= len(self.zones) <= 3:
-            raise ContactError(f"a conical contact has 1 to 3 zones, got {len(self.zones)}")
-
-    def wheel_shape(self, side):
-        """Shape of one wheel for the C library; both sides are alike."""
-        from railsym._core_wheel_rail import cones
-
-        return cones(self.wheel_radius, [self._zone(zone) for zone in self.zones], self.limits, self.zones[0].half_spacing)
-
-    def _zone(self, zone):
-        angle = np.arctan(zone.slope)
-        away = zone.rail_radius + zone.gap
-        unit = hertz(1.0, np.cos(angle) / zone.radius, 1.0 / zone.rail_radius, contact_modulus(self.young_modulus, self.poisson))
-        approach = float(unit.approach)
-        return {"slope": zone.slope, "b0": zone.half_spacing, "radius": zone.radius, "rail_radius": zone.rail_radius,
-                "rail_y": zone.half_spacing + away * np.sin(angle), "rail_z": zone.radius - self.wheel_radius + away * np.cos(angle),
-                "a": float(unit.a) / np.sqrt(approach), "b": float(unit.b) / np.sqrt(approach), "stiffness": approach ** -1.5}
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,8 +114,8 @@ class WheelRail:
     Parameters
     ----------
     vehicle : Vehicle or list of WheelsetPlace
-    contact : object, or pair of them (left, right)
-        Contact table or `ConicalContact`: anything with ``wheel_shape(side)``.
+    contact : ContactPair, ContactTable or ConicalContact, or pair of them (left, right)
+        What else has ``wheel_shape(side)`` serves as well.
     law : str
         Creep law, see `railsym.creep_laws`.
     grid : pair of int
@@ -236,6 +160,7 @@ class WheelRail:
         if not np.all(self._wheel_values["weight"] > 0.0):
             raise ContactError(f"kalker_weight must be positive, got {kalker_weight!r}")
         self.sink = np.zeros(wheels)
+        self._height = np.array([_height(one, shape) for one in self.wheelsets for shape in shapes])
         self._core = self._made(shapes)
         loads = loads if wheel_loads is None else wheel_loads
         if loads is not None:
@@ -289,10 +214,25 @@ class WheelRail:
 
         Raises
         ------
+        OutOfTableError
+            A wheel outside its contact table.
         ContactError
-            Speed not positive; a wheel outside its contact table; a state that is not finite.
+            Speed not positive; a state that is not finite.
         """
         return self._core.rows(q, u, speed, w, rail, seed)
+
+    def explain(self, status, speed, time=None):
+        """Raise the error that a status of rs_wheel_rail_rows stands for; for callers of the C function.
+
+        Parameters
+        ----------
+        status : int
+        speed : float
+            m/s, as it was given.
+        time : float, optional
+            s, for the message.
+        """
+        self._core.explain(status, speed, time)
 
     def outputs(self):
         """`WheelOutputs` of the last `rows`."""
@@ -305,7 +245,7 @@ class WheelRail:
         return WheelOutputs(**found, **{name: patch[:, :, PATCH[name]] for name in ("load", "x", "across", "radius", "angle", "a", "b")})
 
     def _sinks(self, loads):
-        """Drops at which each wheel, centred, carries its load."""
+        """Displacements downwards at which each wheel, centred, carries its load."""
         from scipy.optimize import brentq
 
         def lack(drop, wheel):
@@ -317,12 +257,13 @@ class WheelRail:
             return float(np.sum(found.load[wheel] * np.cos(found.angle[wheel]))) - loads[wheel]
 
         def sink(wheel):
-            low, high = 0.0, 1e-5
+            start, reach = self._height[wheel], 1e-5
+            low = high = start
             try:
                 while lack(low, wheel) > 0.0:
-                    low = 2.0 * low - 1e-5
+                    low, reach = start - reach, 2.0 * reach
                 while lack(high, wheel) < 0.0:
-                    high *= 2.0
+                    high, reach = start + reach, 2.0 * reach
             except ContactError as error:
                 raise ContactError(f"the contact cannot carry the static load of {self._core.names[wheel]}, {loads[wheel]:.6g} N: {error}") from None
             return brentq(lack, low, high, args=(wheel,), xtol=1e-15, rtol=1e-14)
@@ -343,6 +284,15 @@ def _places(vehicle):
     bodies = [body for body, side in rolling.model.wheels if side < 0]
     places = [WheelsetPlace(b.name, start[b.name], (0.0, b.position[1], b.position[2])) for b in bodies]
     return places, vehicle.contact, rolling.preload.wheel_loads
+
+
+def _height(one, shape):
+    """How far the wheelset's centre lies above the height of its wheel's radius, m."""
+    height = -one.offset[2] - shape.r0
+    if not abs(height) <= LARGEST_MISFIT:
+        raise ContactError(f"{one.name}: its centre is {-one.offset[2]:.6g} m above the rails, the contact is for wheels of {shape.r0:.6g} m; "
+                           "make the contact for the vehicle's wheel_radius")
+    return height
 
 
 def _material(given):

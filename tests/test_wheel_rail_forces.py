@@ -8,7 +8,7 @@ from oracles.element_pair import turn
 from oracles.wheel_rail_cases import FLANGE, R0, SPEED, TREAD, TREAD_ONLY, TWO_ZONES, random_state, rolling, rows_of, setting, wheelset
 from oracles.wheel_rail_motion import State
 
-from railsym.wheel_rail import Cone, ConicalContact
+from railsym.conical_contact import Cone, ConicalContact
 
 REST = np.zeros(6)
 # The oracle finds the contact's place along the rail by a search, to sqrt(2^-53) of a lever of 0.5 m: radii and creepages

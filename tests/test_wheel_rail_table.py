@@ -7,8 +7,11 @@ from oracles.wheel_rail_cases import R0, SPEED, TREAD_ONLY, random_state, rollin
 from oracles.wheel_rail_motion import State
 
 import railsym as rs
+from railsym._core import lib
+from railsym.contact_table import OutOfTableError
 from railsym.errors import ContactError
-from railsym.wheel_rail import Cone, ConicalContact, WheelRail, WheelsetPlace
+from railsym.conical_contact import Cone, ConicalContact
+from railsym.wheel_rail import WheelRail, WheelsetPlace
 
 
 @pytest.fixture(scope="module")
@@ -58,11 +61,33 @@ def test_pencil_over_a_table_is_the_derivative_of_the_rows(law):
 
 def test_errors_of_a_table_name_wheel_quantity_and_range(cone_table):
     forces = wheelset(cone_table)
-    for q, said in (([0, -6e-3, 0, 0, 0, 0], r"wheelset 1, left: lateral shift at the contact 0.0060 m is outside the contact table \[-0.0050, 0.0050\] m"),
-                    ([0, 0, 0, 0, 5e-3, 0], r"wheelset 1, left: roll -0.0050 rad is outside the contact table \[-0.0030, 0.0030\] rad"),
-                    ([0, 0, 1e-3, 0, 0, 0], r"wheelset 1, left: drop 0.0011 m presses it into its rail by more than the 0.0003 m")):
-        with pytest.raises(ContactError, match=said):
+    for q, said in (([0, -6e-3, 0, 0, 0, 0], r"wheelset 1, left: lateral shift -6 mm is outside the contact table \[-5, 5\] mm"),
+                    ([0, 0, 0, 0, 5e-3, 0], r"wheelset 1, left: roll 5 mrad is outside the contact table \[-3, 3\] mrad"),
+                    ([0, 0, 1e-3, 0, 0, 0], r"wheelset 1, left: penetration 1.07\d mm is outside the contact table \[0, 0.3\] mm")):
+        with pytest.raises(OutOfTableError, match=said):
             forces.rows(q, rolling(), SPEED)
+        with pytest.raises(OutOfTableError, match="wheelset 1, left: .* at t = 1.204 s"):
+            forces.explain(lib.RS_OUT_OF_TABLE, SPEED, time=1.204)
+
+
+@pytest.mark.parametrize("place, quantity, value", [([0, 0, 0.02, 0.01, -0.03, 0], "penetration", None), ([0, -0.021, 0, 0, 0, 0], "lateral shift", -0.021),
+                                                    ([0, 0, 0, 0, 0.11, 0], "roll", 0.11)])
+def test_errors_of_cones_too(place, quantity, value):
+    forces = wheelset()
+    with pytest.raises(OutOfTableError) as caught:
+        forces.rows(place, rolling(), SPEED)
+    error = caught.value
+    assert error.quantity == quantity and not error.limits[0] <= error.value <= error.limits[1]
+    assert value is None or error.value == pytest.approx(value)
+
+
+def test_penetration_that_an_error_names_is_the_one_of_the_load():
+    forces = wheelset()
+    stiffness = TREAD_ONLY._zone(TREAD_ONLY.zones[0])["stiffness"]
+    y, roll, z, yaw = 1e-3, -1e-4, 3e-5, 0.02
+    forces.rows([0, y, z, yaw, roll, 0], rolling(), SPEED)
+    found = [TREAD_ONLY._penetration((side * y, side * roll, z + forces.sink[0], side * yaw)) for side in (-1, 1)]
+    np.testing.assert_allclose(forces.outputs().load[:, 0], stiffness * np.array(found) ** 1.5, rtol=1e-9)
 
 
 # --- vehicles ---------------------------------------------------------------------------------------------------
@@ -120,7 +145,7 @@ def test_bad_states_are_named_and_nothing_is_kept():
     fine = forces.rows(np.zeros(6), rolling(), SPEED)[0]
     for q, u, said in (([0, np.nan, 0, 0, 0, 0], rolling(), "left: its lateral shift against the rail is nan"),
                        (np.zeros(6), rolling(y=np.inf), "left: its forces are not finite"),
-                       ([0, 0.03, 0, 0, 0, 0], rolling(), r"left: lateral shift -0.0300 m is outside the contact table \[-0.0200, 0.0200\] m"),
+                       ([0, 0.03, 0, 0, 0, 0], rolling(), r"left: lateral shift 30 mm is outside the contact table \[-20, 20\] mm"),
                        (np.zeros(5), rolling(), "q: the wheelsets' coordinates reach number 5")):
         with pytest.raises(ContactError, match=said):
             forces.rows(q, u, SPEED)
@@ -139,7 +164,7 @@ def test_bad_parameters(options, said):
 
 
 def test_what_is_not_a_contact_or_has_no_wheelset():
-    with pytest.raises(ContactError, match="contact is str; .* need a contact table"):
+    with pytest.raises(ContactError, match="contact is str; .* need a ContactPair"):
         wheelset("S1002")
     with pytest.raises(ContactError, match="at least one wheelset"):
         WheelRail([], TREAD_ONLY)

@@ -120,8 +120,8 @@ static void fill(const rs_cone *cone, const wheel_axes *w, const jet *n, jet x, 
 	memcpy(to->load, rows, sizeof rows);
 }
 
-/* 1 where the cone carries load. */
-static int touch(const rs_cone *cone, const wheel_axes *w, rs_patch *to)
+/* Penetration, and where it is positive the patch. */
+static double touch(const rs_cone *cone, const wheel_axes *w, rs_patch *to)
 {
 	double lam = cone->slope, cosine = 1.0 / sqrt(1.0 + lam * lam);
 	jet dy = add(constant(cone->rail_y), scale(-1.0, w->y)), dz = add(constant(cone->rail_z), scale(-1.0, w->z));
@@ -133,28 +133,34 @@ static int touch(const rs_cone *cone, const wheel_axes *w, rs_patch *to)
 	jet S = scale(cosine, add(mul(height, rest), add(scale(lam, along), constant(-lam * cone->b0 - cone->radius))));
 	jet p = add(constant(cone->rail_radius), scale(-1.0, S));
 	if (!(p.v[0] > 0.0))
-		return 0;
+		return p.v[0];
 	jet up = quotient(height, mul(rho, k)), forth = scale(-1.0, quotient(mul(t, m), rho)), n[3];
 	n[0] = constant(0.0);
 	n[1] = scale(cosine, add(add(scale(-1.0, mul(up, w->a[2])), mul(forth, w->a[1])), scale(lam, w->a[1])));
 	n[2] = scale(cosine, add(add(mul(up, w->a[1]), mul(forth, w->a[2])), scale(lam, w->a[2])));
 	fill(cone, w, n, add(mul(m, along), t), dy, dz, S, p, to);
-	return 1;
+	return p.v[0];
 }
 
 int rs_contact_cones_lookup(const rs_contact_table *shape, const double *place, rs_patch *patch, int *count, int *beyond)
 {
 	const rs_contact_cones *cones = (const rs_contact_cones *)shape;
 	wheel_axes w;
-	for (int k = 0; k < 3; k++)
+	*count = 0;
+	for (int k = 0; k < 2; k++)
 		if (!(fabs(place[k]) <= cones->limit[k])) {
 			*beyond = k;
 			return RS_OUT_OF_TABLE;
 		}
 	axes_of(cones, place, &w);
-	*count = 0;
-	for (int zone = 0; zone < cones->cones; zone++)
-		if (touch(&cones->cone[zone], &w, &patch[*count]))
+	for (int zone = 0; zone < cones->cones; zone++) {
+		double penetration = touch(&cones->cone[zone], &w, &patch[*count]);
+		if (!(penetration <= cones->limit[2])) {
+			*beyond = 2;
+			return RS_OUT_OF_TABLE;
+		}
+		if (penetration > 0.0)
 			patch[(*count)++].zone = zone;
+	}
 	return RS_OK;
 }

@@ -5,7 +5,8 @@ import numpy as np
 from oracles.wheel_rail_motion import Setting, State
 
 from railsym.creep import Material
-from railsym.wheel_rail import Cone, ConicalContact, WheelRail, WheelsetPlace
+from railsym.conical_contact import Cone, ConicalContact
+from railsym.wheel_rail import WheelRail, WheelsetPlace
 
 R0, SPEED = 0.46, 35.0
 TREAD = Cone(0.1)
