@@ -122,8 +122,9 @@ RS_INLINE void integrals(int tangents, strip *s)
 #define SMALL 0.5 /* creepages, of what makes the whole strip slip, that count as few beside the spin */
 
 /* S and its slope. */
-RS_INLINE void smooth(rs_lane z, rs_lane *to, rs_lane *slope)
+RS_INLINE void smooth(const rs_lane *of, rs_lane *to, rs_lane *slope)
 {
+	rs_lane z = *of;
 	mask_lane inside = NOT_NEGATIVE(z) & NOT_NEGATIVE(1.0 - z);
 	z = KEEP(z, inside) + KEEP(RS_ZERO + 1.0, NOT_NEGATIVE(z - 1.0) & ~inside);
 	*to = z * z * (3.0 - 2.0 * z);
@@ -141,8 +142,8 @@ RS_INLINE void adhesion(int tangents, double L, strip *s)
 	den = root - eta * psi;
 	RS_SQRT(size, q);
 	mask_lane solved = NOT_NEGATIVE(den);
-	rs_lane over = 1.0 / (size + SMALL), r = (KEEP(den, solved) + SMALL * KEEP(left, below)) * over, fade, fade_slope;
-	smooth(2.0 * r, &fade, &fade_slope);
+	rs_lane over = 1.0 / (size + SMALL), r = (KEEP(den, solved) + SMALL * KEEP(left, below)) * over, twice = 2.0 * r, fade, fade_slope;
+	smooth(&twice, &fade, &fade_slope);
 	some = real & NOT_NEGATIVE(den - LEAST_DENOMINATOR);
 	den = SELECT(some, den, RS_ZERO + 1.0);
 	e = KEEP(q / den, some) * (1.0 / L) + LEAST_TAU;
@@ -154,7 +155,7 @@ RS_INLINE void adhesion(int tangents, double L, strip *s)
 	/* without a solution: all sticks under spin alone below 1, all is FASTSIM's above */
 	z = KEEP(2.0 * (1.0 - R), some) + KEEP(RS_ZERO + 1.0, below & ~some);
 	rs_lane holds, slope;
-	smooth(z, &holds, &slope);
+	smooth(&z, &holds, &slope);
 	slope = KEEP(-2.0 * slope * fade, some);
 	s->weight.v = holds * fade;
 	rs_lane along = over * r / (size + 1e-200);
