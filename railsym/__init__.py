@@ -12,6 +12,7 @@ from importlib import import_module
 from types import ModuleType
 
 _MODULE_OF = {
+    "ChannelWriter": "results",
     "ContactPair": "contact_pair",
     "ContactTable": "contact_table",
     "LinearContact": "contact",
@@ -20,6 +21,7 @@ _MODULE_OF = {
     "Profile": "profiles",
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
+    "Run": "results",
     "Vehicle": "vehicle",
     "creep_forces": "creep",
     "creep_laws": "creep",
@@ -37,7 +39,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("dampers", "plots")
+_SUBMODULES = ("criteria", "dampers", "plots", "results")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 
