@@ -77,6 +77,8 @@
  *   Status    RS_OK, RS_BAD_INDEX (law), RS_BAD_SIZE
  *   Notes     No load or no friction: no force, no slopes. a, b, modulus, weight and coefficients must be positive;
  *             that is not checked. No allocation, no state. One law a file in csrc/creep.
+ *
+ * rs_track_...         the track's frames and rails: contracts in track.h
  */
 #ifndef RAILSYM_H
 #define RAILSYM_H

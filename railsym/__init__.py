@@ -22,6 +22,7 @@ _MODULE_OF = {
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
     "Run": "results",
+    "Track": "track",
     "Vehicle": "vehicle",
     "creep_forces": "creep",
     "creep_laws": "creep",
@@ -31,6 +32,7 @@ _MODULE_OF = {
     "linearise": "linear",
     "load_contact_table": "contact_table",
     "load_profile": "profiles",
+    "load_track": "track",
     "load_vehicle": "vehicle",
     "parameter_map": "stability_map",
     "profiles": "profiles",
@@ -39,7 +41,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("criteria", "dampers", "plots", "results")
+_SUBMODULES = ("criteria", "dampers", "plots", "results", "track")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 
