@@ -128,7 +128,7 @@ void rs_contact_table_arrays(const rs_contact_table *table, int zone, double *cl
 void rs_contact_table_free(rs_contact_table *table);
 int rs_contact_lookup(const rs_contact_table *table, const double *place, rs_patch *patch, int *count, int *beyond);
 int rs_contact_lookup_many(const rs_contact_table *table, int n, const double *place, rs_patch *patch, int *count,
-                           int *failed, int *beyond);
+                           int *beyond);
 
 enum { RS_BAD_SPEED = 8 };
 enum { RS_CONTACT_TABLE = 0, RS_CONTACT_CONES = 1 };
