@@ -39,6 +39,7 @@ _MODULE_OF = {
     "load_vehicle": "vehicle",
     "parameter_map": "stability_map",
     "profiles": "profiles",
+    "quasi_static": "simulation",
     "sensitivity": "sensitivity",
     "simulate": "simulation",
     "stability_map": "stability_map",

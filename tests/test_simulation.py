@@ -7,7 +7,7 @@ import pytest
 import railsym as rs
 from railsym.errors import SimulationError, TrackError
 from railsym.simulation import Simulation, SpeedProfile
-from railsym.wheel_rail import ConicalContact, Cone
+from railsym.conical_contact import Cone, ConicalContact
 
 BOGIE = rs.load_vehicle("bogie").configured("with_anti_yaw_dampers")
 CONES = ConicalContact(zones=(Cone(0.1),))

@@ -9,7 +9,7 @@ from railsym.model import Model
 from railsym.simulation import Simulation
 from railsym.track import Curve, Straight, Track, Transition
 from railsym.track_frames import UniformTrack, body_motion, relative_poses
-from railsym.wheel_rail import ConicalContact, Cone
+from railsym.conical_contact import Cone, ConicalContact
 
 BOGIE = rs.load_vehicle("bogie").configured("with_anti_yaw_dampers")
 CONES = ConicalContact(zones=(Cone(0.1),))

@@ -61,7 +61,7 @@ def chosen(recipes, patterns):
     try:
         return [recipes[name] for name in known.require(*("*" if p == "all" else p for p in patterns))]
     except UnknownChannelError as error:
-        raise SimulationError(f"channels: {error}") from None
+        raise SimulationError(f"channels: {error}".replace("list(run.channels)", "Simulation(...).available")) from None
 
 
 class Recorder:

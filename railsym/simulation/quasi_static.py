@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Equilibrium in a curve: attitude and wheel forces where every coordinate rests against its track frame.
+
+    r(q, u, 0) = 0,   u = 0 but for the wheelsets' spins, which turn as the creep forces make them
+
+Unknown are all coordinates but the spin angles, and the spin rates in their place. Newton's iteration, with derivatives by
+differences of the same residual that the integrator steps; from place to place along the track the last solution is the next
+guess, so that a passage from straight to curve is a continuation in curvature. Also for a vehicle that is unstable there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from railsym.errors import ConvergenceError, CoreError
+from railsym.results import Run
+from railsym.results.metadata import Ending
+from railsym.simulation.transient import Simulation
+
+_STEP = 1e-7       # m or rad; 100 N on the stiffest contact, 1e-8 of which is rounding
+_SPIN_STEP = 1e-5  # rad/s
+_FORCE = 1e-7      # of the vehicle's weight: N, and N m on 1 m, that may be left over in one equation
+_ITERATIONS = 40
+
+
+class _Balance:
+    """Residual over the unknowns at one time."""
+
+    def __init__(self, parts):
+        self.parts, topology = parts, parts.model.topology
+        self.spin = topology.cyclic
+        self.steps = np.where(self.spin, _SPIN_STEP, _STEP)
+        weight = parts.vehicle.gravity * sum(b.mass for b in parts.vehicle.bodies)
+        self.allowed = _FORCE * weight * np.where(topology.first_order, 1e-1, 1.0)
+
+    def state(self, x):
+        """q and u of the unknowns."""
+        return np.where(self.spin, 0.0, x), np.where(self.spin, x, 0.0)
+
+    def residual(self, time, x):
+        """r (n,)"""
+        q, u = self.state(x)
+        return self.parts.integrator.residual(time, q, u, np.zeros_like(q))
+
+    def jacobian(self, time, x, r):
+        """dr/dx (n, n) by differences."""
+        columns = []
+        for k, step in enumerate(self.steps):
+            moved = x.copy()
+            moved[k] += step
+            columns.append((self.residual(time, moved) - r) / step)
+        return np.array(columns).T
+
+    def solve(self, time, x):
+        """The unknowns where r = 0, from a guess; None where the iteration does not get there."""
+        try:
+            r = self.residual(time, x)
+            for _ in range(_ITERATIONS):
+                if (np.abs(r) <= self.allowed).all():
+                    return x
+                x, r = self._nearer(time, x, r, np.linalg.solve(self.jacobian(time, x, r), -r))
+        except (CoreError, np.linalg.LinAlgError):
+            pass
+        return None
+
+    def _nearer(self, time, x, r, move):
+        """The Newton step, shortened until the residual exists and does not grow much."""
+        size = np.abs(r / self.allowed).max()
+        for share in 0.5 ** np.arange(12):
+            try:
+                new = self.residual(time, x + share * move)
+            except CoreError:
+                continue
+            if np.abs(new / self.allowed).max() <= 1.5 * size:
+                return x + share * move, new
+        raise CoreError("no step of Newton's iteration makes the residual smaller")
+
+
+def quasi_static(vehicle, *, speed, track, places, contact="linear", channels=None, markers=None, **forces):
+    """Equilibria of a vehicle along a track.
+
+    Parameters
+    ----------
+    vehicle, speed, contact, channels, markers, forces
+        As `Simulation`; the speed is constant, and irregularities of the track are as large as they are there.
+    track : railsym.Track
+    places : array_like (k,)
+        m, arc lengths of the vehicle's centre, increasing. The first should lie where the solution is near the design position, on
+        a straight or at the beginning of a transition; the steps follow the transition finely enough for each solution to
+        serve as the next guess (they are halved where it does not).
+
+    Returns
+    -------
+    railsym.Run
+        Over time = (s - first place)/speed, with the same channels as a simulation: what it would tend to there, were each place
+        an endless curve.
+
+    Raises
+    ------
+    ConvergenceError
+        With the place from which on no equilibrium was found: the vehicle cannot run there, or a wheel leaves its contact table.
+    """
+    places = np.atleast_1d(np.asarray(places, dtype=float))
+    simulation = Simulation(vehicle, speed=speed, track=track, contact=contact, channels=channels, markers=markers, start=float(places[0]), **forces)
+    parts, times = simulation.parts, (places - places[0]) / float(np.asarray(speed))
+    parts.check_track(float(times[-1]))
+    balance = _Balance(parts)
+    q, u = parts.start()
+    x, now, rows = np.where(balance.spin, u, q), 0.0, []
+    for time in times:
+        x = _continued(balance, x, now, time, places[0], float(speed))
+        now = time
+        parts.integrator.start(time, *balance.state(x))
+        rows.append(simulation.recorder.values(np.array([time]), parts.integrator.sample()[0][None])[0])
+    info = simulation.info.ended(Ending("completed", time=float(times[-1]), distance=float(places[-1])), "quasi-static equilibria along the track")
+    return Run(times, np.array(rows), simulation.recorder.channels, info)
+
+
+def _continued(balance, x, start, end, first, speed):
+    """Solution at ``end`` (s) from that at ``start``, by steps that are halved where the iteration fails."""
+    share, at = 1.0, 0.0
+    while at < 1.0:
+        share = min(share, 1.0 - at)
+        found = balance.solve(start + (at + share) * (end - start), x)
+        if found is None:
+            share *= 0.5
+            if share < 1.0 / 256.0 or end == start:
+                place = first + speed * (start + at * (end - start))
+                raise ConvergenceError(f"no equilibrium was found beyond s = {place:.6g} m: the vehicle cannot run there steadily, or a wheel leaves its "
+                                       "contact table; look at the last places (places=...) and begin on a straight")
+            continue
+        x, at = found, at + share
+    return x
