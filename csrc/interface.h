@@ -309,5 +309,6 @@ int rs_travel_bodies(rs_travel *travel, rs_model *model, int kernel, const int *
 int rs_travel_pairs(rs_travel *travel, rs_model *model, int kernel, int count, const int *instance, const int *frames,
                     const double *offsets);
 int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame);
+void rs_travel_steady(rs_travel *travel, int steady);
 void rs_integrator_travel(rs_integrator *integrator, rs_travel *travel);
 int rs_integrator_wheels(rs_integrator *integrator, rs_wheel_rail *wheels, int wheelsets, const int *first);

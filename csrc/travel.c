@@ -136,6 +136,11 @@ int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame)
 	return RS_OK;
 }
 
+void rs_travel_steady(rs_travel *travel, int steady)
+{
+	travel->steady = steady;
+}
+
 static double travelled(rs_travel *travel, double time)
 {
 	int piece = 0;
@@ -151,7 +156,7 @@ static void set_body(const rs_travel *travel, const rs_moved_body *body)
 {
 	const rs_track_frame *frame = travel->frame + body->frame;
 	int lanes = rs_kernel_lanes();
-	double V = travel->V, dV = travel->dV, *to = body->to;
+	double V = travel->V, dV = travel->dV, *to = body->to, squared = travel->steady ? 0.0 : V * V;
 	to[0] = V;
 	for (int k = 0; k < 3; k++)
 		to[(1 + k) * lanes] = V * frame->turning[k];
@@ -159,7 +164,7 @@ static void set_body(const rs_travel *travel, const rs_moved_body *body)
 		return;
 	to[4 * lanes] = dV;
 	for (int k = 0; k < 3; k++) {
-		to[(5 + k) * lanes] = dV * frame->turning[k] + V * V * frame->turning_rate[k];
+		to[(5 + k) * lanes] = dV * frame->turning[k] + squared * frame->turning_rate[k];
 		to[(8 + k) * lanes] = travel->gravity * frame->attitude[6 + k];
 	}
 }

@@ -15,6 +15,7 @@
  *             offsets   6 count, m, design place of each end's body in its frame
  * rs_travel_wheelsets   frames at which the wheel-rail forces want the lie of the rails
  *   Status    RS_OK, RS_NO_MEMORY, RS_BAD_INDEX
+ * rs_travel_steady      1: every place is taken as if it went on for ever, without angular acceleration of the frames
  */
 #ifndef RS_TRAVEL_H
 #define RS_TRAVEL_H
@@ -41,6 +42,7 @@ struct rs_travel {
 	rs_track_frame *frame;    /* frames */
 	double *time, *place, *start_speed, *acceleration;  /* pieces */
 	double gravity;
+	int steady;
 	double V, dV;             /* at the time last asked for */
 	rs_moved_body *body;
 	rs_moved_pair *pair;

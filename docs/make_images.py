@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
 import railsym as rs
@@ -46,6 +47,30 @@ def main():
     save(plots.plot_profile_pair(pair, pair.contact(shift), conicities, title="S1002 on UIC60, inclination 1:40, gauge 1435 mm"), "profile_pair.png")
     track = rs.Track.s_curve(500, 200, transition=60, cant=0.1, kind="bloss").with_irregularity("erri_b176_low", seed=1)
     save(track.plot(title="S-curve of radius 500 m, cant 100 mm, Bloss transitions; ERRI B176 low, seed 1")["plan"], "track.png")
+    run_images(vehicle, rs.ContactPair("S1002", "UIC60", inclination=1 / 40, gauge=1.435).table())
+
+
+def run_images(vehicle, table):
+    """Runs: irregular straight track, and a curve beside its equilibria."""
+    track = rs.Track.straight(1000.0).with_irregularity("erri_b176_low", seed=1)
+    run = rs.simulate(vehicle, speed=60.0, duration=15.0, track=track, contact=table)
+    axes = run.plot(["wheelset1.y", "bogie1.above_wheelset1_left.ay", "wheelset1.left.Q"])
+    save(axes, "transient_irregular.png")
+    curve = rs.Track.curve(600.0, 150.0, transition=60.0, cant=0.1)
+    channels = ["s", "wheelset1.left.Y", "wheelset1.right.Y", "wheelset1.y", "wheelset2.y"]
+    run = rs.simulate(vehicle, speed=25.0, duration=14.0, track=curve, contact=table, channels=channels)
+    steady = rs.quasi_static(vehicle, speed=25.0, track=curve, places=np.arange(0.0, 340.0, 2.5), contact=table, channels=channels)
+    _, axes = plt.subplots(2, 1, sharex=True, figsize=(7.5, 5.5), layout="constrained")
+    for panel, names, scale, label in ((axes[0], channels[1:3], 1e-3, "Y of wheelset 1, kN"), (axes[1], channels[3:], 1e3, "lateral shift, mm")):
+        for name, colour in zip(names, ("black", "tab:blue")):
+            panel.plot(run["s"], scale * run[name], color=colour, label=name)
+            panel.plot(steady["s"], scale * steady[name], "--", color=colour, label=f"{name}, equilibrium")
+        panel.set_ylabel(label)
+        panel.legend(fontsize="small")
+        panel.grid(alpha=0.3)
+    axes[1].set_xlabel("s of the vehicle's centre, m")
+    axes[0].set_title("Pendolino at 25 m/s, curve of 600 m, cant 100 mm, S1002 on UIC60", fontsize="medium")
+    save(axes, "transient_curve.png")
 
 
 if __name__ == "__main__":

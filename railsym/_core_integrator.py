@@ -189,3 +189,7 @@ class Travel:
     def add_wheelsets(self, frames):
         """Frames of the wheelsets."""
         _check(lib.rs_travel_wheelsets(self._pointer, len(frames), _integers(frames)), "frames of wheelsets")
+
+    def set_steady(self):
+        """Take every place as if it went on for ever: no angular acceleration of the frames."""
+        lib.rs_travel_steady(self._pointer, 1)

@@ -5,7 +5,8 @@
 
 Unknown are all coordinates but the spin angles, and the spin rates in their place. Newton's iteration, with derivatives by
 differences of the same residual that the integrator steps; from place to place along the track the last solution is the next
-guess, so that a passage from straight to curve is a continuation in curvature. Also for a vehicle that is unstable there.
+guess, so that a passage from straight to curve is a continuation in curvature. The angular acceleration of the frames in a transition is
+left out. Also for a vehicle that is unstable there.
 """
 
 from __future__ import annotations
@@ -104,6 +105,7 @@ def quasi_static(vehicle, *, speed, track, places, contact="linear", channels=No
     simulation = Simulation(vehicle, speed=speed, track=track, contact=contact, channels=channels, markers=markers, start=float(places[0]), **forces)
     parts, times = simulation.parts, (places - places[0]) / float(np.asarray(speed))
     parts.check_track(float(times[-1]))
+    parts.integrator._travel.set_steady()
     balance = _Balance(parts)
     q, u = parts.start()
     x, now, rows = np.where(balance.spin, u, q), 0.0, []
