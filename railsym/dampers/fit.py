@@ -8,9 +8,9 @@ from time import perf_counter
 
 import numpy as np
 
-from railsym.dampers import energy, solve
+from railsym.dampers import elongation, energy, solve
 from railsym.dampers.models import DamperModel
-from railsym.dampers.parametrisation import Parametrisation, damping_nodes, stiffness_nodes
+from railsym.dampers.parametrisation import Parametrisation, stiffness_nodes
 from railsym.dampers.uncertainty import Identifiability, covariance, identifiability, intervals
 from railsym.errors import ModelError
 
@@ -178,21 +178,21 @@ def _lags(loops, model, curve, odd, given):
     plain = energy.constants(loops, viscous=model == "viscous")[2]
     if model == "viscous" or (model == "maxwell" and not curve):
         return [plain]
-    return [energy.lag_of(loops, odd, _speeds(loops, model), linear=not curve)[0], plain]
+    return [elongation.lag_by_elongation(loops, _speeds(loops, model), odd, None if curve else _one_level(loops)), plain]
 
 
-def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, quick=False):
+def _one_level(loops):
+    """Level of force that makes the damper's curve a constant."""
+    return np.array([0.0, np.abs(loops.force).max()])
+
+
+def _fitted(loops, model, curve, odd, given, method, bounds, progress=False):
     """Parametrisation, vector and misfit; from the second lag too where the first one leaves much."""
     best, fixed = None, 0.0 if given is None else given
     for tau in _lags(loops, model, curve, odd, given):
         made, x = _start(loops, model, curve, odd, tau, int(given is None))
         if method == "least_squares":
-            made, x = solve.refine(loops, made, x, fixed, bounds, progress, 12 if curve else 40, curve)
-            if curve and not quick:
-                # What a wrong model leaves is no reason for a curve with steps.
-                left = _norm(solve.misfit(loops, made, x, fixed))
-                made, x = solve.with_better_nodes(loops, made, x)
-                made, x = solve.refine(loops, made, x, fixed, bounds, progress, left=min(left, 0.2))
+            made, x = _sharpened(loops, made, x, fixed, bounds, progress)
         found = made, x, solve.misfit(loops.coarse(2) if method == "energy" else loops, made, x, fixed)
         if best is None or _norm(found[2]) < _norm(best[2]):
             best = found
@@ -201,28 +201,48 @@ def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, qui
     return best
 
 
+def _sharpened(loops, made, x, fixed, bounds, progress):
+    """Least squares; a curve gets nodes after its start, and once more where it then leaves more than noise."""
+    if made.damping_nodes is None:
+        return solve.refine(loops, made, x, fixed, bounds, progress)
+    for most in (25, 40):
+        made, x = solve.with_better_nodes(loops, made, x)
+        made, x = solve.refine(loops, made, x, fixed, bounds, progress, most)
+        if _norm(solve.misfit(loops, made, x, fixed)) < np.hypot(_GOOD, 1.1 * solve.noise_floor(loops)):
+            break
+    return made, x
+
+
 def _start(loops, model, curve, odd, tau, lags):
     """Parametrisation and vector by the energy method."""
-    shifted = loops.shifted(tau)
-    kind = "viscous" if model == "viscous" else "maxwell"
-    nodes = _speeds(loops, model)
+    shifted, nodes = loops.shifted(tau), _speeds(loops, model)
     stiffness, value, _ = energy.constants(loops, tau, model == "viscous")
-    speed, rising = loops.velocity, True
+    kind, rising, at = "viscous" if model == "viscous" else "maxwell", True, None
     if kind == "maxwell" and (curve or nodes is not None):
-        constant = max(float(energy.stored(shifted, None, odd, not curve)[0][0]), 1e-10)
-        compliance = np.maximum(energy.stored(shifted, nodes, odd, not curve)[0], 1e-10)
-        rising = bool(compliance[-1] <= compliance[0])
-        ordered = np.minimum.accumulate if rising else np.maximum.accumulate
-        compliance = ordered(np.clip(compliance, 0.1 * constant, 10.0 * constant))
-        stiffness = 1.0 / compliance
-        speed = energy.damper_speed(shifted, compliance, nodes)
-        value = energy.dissipated(shifted, speed)
-    at = None
-    if curve:
-        at = damping_nodes(speed, odd)
-        value = energy.force_curve(shifted, speed, at, _STEEPEST * max(value, 1.0))
+        found = elongation.refined_elongation(shifted, nodes, odd) if curve else elongation.split_elongation(shifted, nodes, True, _one_level(loops))
+        stiffness, rising = _monotone(1.0 / found.compliance if nodes is None else 1.0 / np.maximum(found.compliance, 1e-10))
+        at, curve_force = found.speed, found.force
+        value = max(float(found.force[-1] / max(found.speed[-1], 1e-12)), 1.0)
+        if curve:
+            # a step of force takes a little speed, so that D has a slope everywhere
+            at, value = at + curve_force / (_STEEPEST * np.ptp(curve_force) / max(np.ptp(at), 1e-9)), curve_force
+    elif curve:
+        at = energy.speed_nodes(loops, odd)
+        value = energy.force_curve(shifted, loops.velocity, at, _STEEPEST * max(value, 1.0))
+    at = at if curve else None
     made = Parametrisation(kind, at, nodes, float(np.abs(loops.force).max()), rising, lags)
-    return made, made.vector(max(value, 1.0) if at is None else value, stiffness, tau)
+    return made, made.vector(value, stiffness, tau)
+
+
+def _monotone(stiffness):
+    """A stiffness curve made monotone in the direction of its ends, within a factor of ten of its median; whether it rises."""
+    middle = float(np.clip(np.median(stiffness), 1e4, 1e10))
+    clipped = np.clip(stiffness, 0.1 * middle, 10.0 * middle)
+    rising = bool(clipped[-1] >= clipped[0])
+    # the mean of the two tightest monotone curves from either end
+    sign = 1.0 if rising else -1.0
+    up, down = np.maximum.accumulate(sign * clipped), np.minimum.accumulate(sign * clipped[::-1])[::-1]
+    return sign * 0.5 * (up + down), rising
 
 
 def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, started):
@@ -240,7 +260,7 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
     shifted = loops.shifted(lag)
     stiffness = damper.series_stiffness
     if made.kind == "maxwell" and stiffness is None:
-        stiffness = 1.0 / max(float(energy.stored(shifted)[0][0]), 1e-10)
+        stiffness = 1.0 / max(float(elongation.split_elongation(shifted, None, made.damping_nodes is None or made.damping_nodes[0] == 0.0).compliance[0]), 1e-10)
     compliance = np.array([0.0 if stiffness is None else 1.0 / stiffness])
     damping = damper.damping or energy.dissipated(shifted, energy.damper_speed(shifted, compliance))
     message = _message(loops, model, method, _norm(misfit), lag, lag_known, made, x, stiffness, damping, told)
@@ -291,6 +311,6 @@ def _message(loops, model, method, misfit, lag, lag_known, made, x, stiffness, d
 def _better(loops, model, method, given, misfit):
     """The first costlier model that leaves less than half of the misfit."""
     for other in MODELS[MODELS.index(model) + 1:]:
-        if _norm(_fitted(loops, other, True, _is_odd(loops), given, method, None, quick=True)[2]) < 0.5 * misfit:
+        if _norm(_fitted(loops, other, True, _is_odd(loops), given, "energy" if method == "energy" else method, None)[2]) < 0.5 * misfit:
             return other
     return None

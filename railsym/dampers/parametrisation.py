@@ -104,14 +104,6 @@ class Parametrisation:
         return np.array([*low, *[limits[0]] * lags], dtype=float), np.array([*high, *[limits[1]] * lags], dtype=float)
 
 
-def damping_nodes(speed, symmetric, count=9):
-    """Speeds (m/s) for a damping curve: dense near rest, where curves bend."""
-    grid = np.linspace(0.0, 1.0, count) ** 1.6
-    if symmetric:
-        return np.abs(speed).max() * grid
-    return np.concatenate([speed.min() * grid[:0:-1], speed.max() * grid])
-
-
 def stiffness_nodes(velocity):
     """Speeds (m/s) for a stiffness curve."""
-    return np.abs(velocity).max() * np.array([0.0, 0.1, 0.22, 0.4, 0.65, 1.0])
+    return np.abs(velocity).max() * np.array([0.0, 0.05, 0.12, 0.24, 0.42, 0.68, 1.0])

@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from railsym import _core
+from railsym.dampers.energy import shared
 from railsym.dampers.models import curve_value
 from railsym.errors import CoreError
 
@@ -180,7 +181,7 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False, 
     return made, found.x
 
 
-def with_better_nodes(loops, made, x, count=11):
+def with_better_nodes(loops, made, x, count=16):
     """The same damping curve with nodes over the speeds that the damper has in these tests, denser where it bends."""
     model = made.model(x)
     record = model.force_law_record()
@@ -190,23 +191,22 @@ def with_better_nodes(loops, made, x, count=11):
         return made, x
     speed = loops.velocity if made.kind == "viscous" else own_speed(record, force)
     speed = np.clip(speed, -_WIDEST * np.abs(loops.velocity).max(), _WIDEST * np.abs(loops.velocity).max())
+    low = 0.3 * np.abs(speed).max(axis=1).min()
     if made.damping_nodes[0] == 0.0:
-        nodes = _spread(record, np.abs(speed).max(), count)
+        nodes = _spread(record, np.abs(speed).max(), low, count)
     else:
-        nodes = np.concatenate([_spread(record, speed.min(), count)[:0:-1], _spread(record, speed.max(), count)])
+        nodes = np.concatenate([_spread(record, speed.min(), low, count)[:0:-1], _spread(record, speed.max(), low, count)])
     damping, stiffness, lag = made.split(x)
     value = _damping(record, nodes)[0]
     moved = replace(made, damping_nodes=nodes)
     return moved, np.concatenate([moved.vector(value, np.ones(max(len(stiffness), 1)), 0.0)[:len(nodes) - 1], stiffness, lag])
 
 
-def _spread(record, end, count):
-    """Nodes from 0 to ``end``: equal shares of speed (towards rest), of force and of bend."""
-    fine = np.linspace(0.0, 1.0, 401) ** 2
-    force, slope = _damping(record, fine * end)
-    share = fine ** (1.0 / 1.6) + np.abs(force / force[-1])
-    bend = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(np.log(np.maximum(slope, 1e-3 * slope.max())))))])
-    share = share + 0.7 * bend / max(bend[-1], 1.0)
-    nodes = np.interp(np.linspace(0.0, share[-1], count), share, fine)
-    nodes[0], nodes[-1] = 0.0, 1.0
-    return end * nodes
+def _spread(record, end, low, count):
+    """Nodes from 0 to ``end``: shares of speed, of its logarithm down to ``low``, of force and of bend."""
+    def force_and_bend(fine):
+        force, slope = _damping(record, fine * end)
+        bend = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(np.log(np.maximum(slope, 1e-3 * slope.max())))))])
+        return np.abs(force / force[-1]) + bend / max(bend[-1], 1.0)
+
+    return end * shared(low / abs(end), count, force_and_bend, (0.7, 0.7, 1.4))
