@@ -13,7 +13,7 @@ test as well as the largest, and a steep beginning (friction) or a flat end (blo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from railsym.dampers.energy import LARGEST_LAG, hats, integral, shared
 _LEVELS = 18         # of force, over half of the curve
 _SMALLEST = 0.3      # of the peak force of the smallest test: the lowest levels
 _RIDGE = 1e-12       # of the normal equations, against columns that no test tells apart
-_SOFT = 0.5          # standard deviation of the relative change of slope from level to level
+_SOFT = 0.1          # standard deviation of the relative change of slope from level to level
 _PARTS = 62          # independent errors in a cycle: real and imaginary parts of 31 harmonics
 _GRID = 15           # lags of the first look
 
@@ -47,28 +47,35 @@ class Elongation:
     misfit: float
 
 
+def _level_force(loops, symmetric):
+    """Force (tests, points): of a symmetric damper without its mean, which is then an offset."""
+    return loops.force if symmetric else loops.force + loops.mean[:, None]
+
+
 def force_levels(loops, symmetric, count=_LEVELS):
     """Levels (N) that share the range of the largest test, and the logarithm of the ranges of all."""
-    peak = np.abs(loops.force).max(axis=1)
+    force = _level_force(loops, symmetric)
+    peak = np.abs(force).max(axis=1)
     half = shared(_SMALLEST * peak.min() / peak.max(), count)
     if symmetric:
         return peak.max() * half
-    return np.concatenate([loops.force.min() * half[:0:-1], loops.force.max() * half])
+    return np.concatenate([force.min() * half[:0:-1], force.max() * half])
 
 
 def finer_levels(loops, found, symmetric, count=_LEVELS + 6):
     """Levels that share the damper's speed as well: more of them where a small force makes much speed, as in a blow-off valve."""
     low = _SMALLEST * np.abs(loops.force).max(axis=1).min()
+    force = _level_force(loops, symmetric)
 
-    def half(force, speed, end):
-        return end * shared(low / end, count, lambda x: np.interp(x * end, force, speed), (0.7, 1.0, 1.0))
+    def half(at, speed, end):
+        return end * shared(low / end, count, lambda x: np.interp(x * end, at, speed), (0.7, 1.0, 1.0))
 
     up = found.force >= 0.0
-    above = half(found.force[up], found.speed[up], found.force[-1])
+    above = half(found.force[up], found.speed[up], found.force[-1] if symmetric else force.max())
     if symmetric:
         return above
     down = found.force <= 0.0
-    return np.concatenate([-half(-found.force[down][::-1], -found.speed[down][::-1], -found.force[0])[:0:-1], above])
+    return np.concatenate([-half(-found.force[down][::-1], -found.speed[down][::-1], -force.min())[:0:-1], above])
 
 
 def split_elongation(loops, speed_nodes=None, symmetric=True, levels=None, before=None):
@@ -94,8 +101,9 @@ def split_elongation(loops, speed_nodes=None, symmetric=True, levels=None, befor
 
     levels = force_levels(loops, symmetric) if levels is None else levels
     weight = 1.0 / np.sqrt(np.mean(loops.displacement**2, axis=1))[:, None]
-    spring = loops.force[None] if speed_nodes is None else hats(np.abs(loops.velocity), speed_nodes) * loops.force
-    columns = np.concatenate([spring - spring.mean(axis=2, keepdims=True), integral(_rises(loops.force, levels), loops.period)])
+    force = _level_force(loops, symmetric)
+    spring = force[None] if speed_nodes is None else hats(np.abs(loops.velocity), speed_nodes) * force
+    columns = np.concatenate([spring - spring.mean(axis=2, keepdims=True), integral(_rises(force, levels), loops.period)])
     table = (columns * weight).reshape(len(columns), -1)
     wanted = (loops.displacement * weight).ravel()
     size = np.sqrt(np.sum(table**2, axis=1)) + 1e-300
@@ -122,10 +130,28 @@ def _smooth(before, levels, first, points, tests):
 
 def refined_elongation(loops, speed_nodes=None, symmetric=True):
     """`split_elongation` in three passes, each with levels after the curve of the one before."""
-    found = split_elongation(loops, speed_nodes, symmetric)
-    for _ in range(2):
+    found = best = split_elongation(loops, speed_nodes, symmetric)
+    for k in range(2 if symmetric else 4):
+        if not symmetric:
+            loops = replace(loops, mean=_mean_force(loops, found))
         found = split_elongation(loops, speed_nodes, symmetric, finer_levels(loops, found, symmetric), found)
-    return found
+        # where the mean forces do not settle, the pass that leaves least counts
+        best = found if symmetric or k == 0 or found.misfit < best.misfit else best
+    return best
+
+
+def _mean_force(loops, found):
+    """Mean force (tests,) with which the damper itself comes back after a cycle: oint R(F + mean) dt = 0, by bisection."""
+    low, high = (np.full(len(loops.mean), end) for end in (found.force[0], found.force[-1]))
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        force = loops.force + middle[:, None]
+        speed = np.interp(force, found.force, found.speed)
+        for end, beyond in ((0, np.minimum(force - found.force[0], 0.0)), (-1, np.maximum(force - found.force[-1], 0.0))):
+            speed += beyond * (found.speed[end] - found.speed[0 if end else -1]) / (found.force[end] - found.force[0 if end else -1])
+        forward = speed.mean(axis=1) > 0.0
+        low, high = np.where(forward, low, middle), np.where(forward, middle, high)
+    return 0.5 * (low + high)
 
 
 def _rises(force, levels):

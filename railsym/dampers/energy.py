@@ -34,10 +34,12 @@ class Loops:
         Orders that the sampling can tell.
     scale : ndarray (tests,)
         Root mean square of the force, N.
+    mean : ndarray (tests,)
+        N, of the force: what an asymmetric damper adds to its loop.
     noise : ndarray (tests,)
         Root mean square of the force that differs from cycle to cycle, N.
-    samples : ndarray (tests,)
-        Number of samples behind each mean cycle.
+    deviation : ndarray (tests, orders)
+        Standard deviation of the harmonics, N (root mean square of the complex error).
     """
 
     angular: np.ndarray
@@ -47,8 +49,9 @@ class Loops:
     harmonics: np.ndarray
     kept: np.ndarray
     scale: np.ndarray
+    mean: np.ndarray
     noise: np.ndarray
-    samples: np.ndarray
+    deviation: np.ndarray
 
     @property
     def period(self):
@@ -72,7 +75,7 @@ class Loops:
     @property
     def _clear(self):
         """Harmonics that stand out of the noise; the others would only make the damper's speed noisy."""
-        return np.abs(self.harmonics) > 4.0 * (self.noise * np.sqrt(2.0 / self.samples))[:, None]
+        return np.abs(self.harmonics) > 2.8 * self.deviation
 
 
 def synthesis(harmonics, points):
@@ -101,10 +104,19 @@ def loops_of(cleaned, points=256, orders=31):
         kept[k, :top] = True
     rate = 1j * (1 + np.arange(orders)) * angular[:, None] * motion
     scale = np.sqrt(0.5 * np.sum(np.abs(force) ** 2, axis=1))
-    noise = np.array([one.noise for one in cleaned])
-    samples = np.array([one.cycles * one.samples_per_cycle for one in cleaned])
-    made = Loops(angular, synthesis(motion, points), synthesis(rate, points), synthesis(force, points), force, kept, scale, noise, samples)
+    noise, mean = (np.array(part) for part in ([one.noise for one in cleaned], [np.mean(one.force) for one in cleaned]))
+    deviation = np.array([_deviations(one, orders) for one in cleaned])
+    made = Loops(angular, synthesis(motion, points), synthesis(rate, points), synthesis(force, points), force, kept, scale, mean, noise, deviation)
     return made.shifted(0.0)
+
+
+def _deviations(one, orders):
+    """Standard deviation (orders,) of the force's harmonics in a CleanRecord; by white noise where it has none."""
+    white = 2.0 * one.noise / np.sqrt(one.cycles * one.samples_per_cycle)
+    found = np.full(orders, white)
+    if one.deviation is not None:
+        found[:len(one.deviation)] = one.deviation[:orders]
+    return found
 
 
 def hats(x, nodes):

@@ -18,11 +18,12 @@ MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
 METHODS = ("energy", "least_squares")
 _DIFFERENT_FREQUENCIES = 1.2  # ratio that tells the lag
 _GOOD = 1e-3                  # relative misfit below which a constant is enough
-_DOUBTFUL = 3e-3              # relative misfit above which a fit is begun again from another lag
+_DOUBTFUL = 0.02              # relative misfit above which a fit is begun again from another lag
 _NO_MODEL = {"energy": 0.15, "least_squares": 0.05}  # relative misfit above which a model is wrong even if none is better
 _CONSTANT = 0.04             # a stiffness that changes by less over the tests is constant
+_HOPELESS = 0.05              # relative misfit of constants by the energy method above which a curve is needed
 _STEEPEST = 100.0             # times the equivalent damping: the start of a curve
-_EVEN = 5e-3                  # even harmonics above this part of the force: not symmetric
+_EVEN = 2e-3                  # even harmonics above this part of the force, and above noise: not symmetric
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,9 @@ def identify(records, model="maxwell", method="least_squares", bounds=None, prog
     shapes = {"constant": (False,), "curve": (True,), "auto": (False, True)}[damping]
     best = None
     for curve in shapes:
-        found = _fitted(loops, model, curve, odd, given, method, bounds, progress)
+        found = _fitted(loops, model, curve, odd, given, "energy" if len(shapes) > 1 and not curve else method, bounds, progress)
+        if method == "least_squares" and len(shapes) > 1 and not curve and _norm(found[2]) < _HOPELESS:
+            found = _fitted(loops, model, curve, odd, given, method, bounds, progress)
         if best is None or _norm(found[2]) < 0.8 * _norm(best[2]):
             best = found
         if _norm(best[2]) < np.hypot(_GOOD, 1.3 * solve.noise_floor(loops)):
@@ -158,8 +161,10 @@ def _cleaned(records):
 
 
 def _is_odd(loops):
-    even = np.linalg.norm(loops.harmonics[:, 1::2], axis=1) / np.linalg.norm(loops.harmonics, axis=1)
-    return bool(np.median(even) < _EVEN + 3.0 * solve.noise_floor(loops))
+    """Whether the even harmonics of the force are noise in half of the tests."""
+    even, total = np.linalg.norm(loops.harmonics[:, 1::2], axis=1), np.linalg.norm(loops.harmonics, axis=1)
+    noise = np.linalg.norm(loops.deviation[:, 1::2] * loops.kept[:, 1::2], axis=1)
+    return bool(np.median((even - 1.7 * noise) / total) < _EVEN)
 
 
 def _norm(misfit):
@@ -186,13 +191,13 @@ def _one_level(loops):
     return np.array([0.0, np.abs(loops.force).max()])
 
 
-def _fitted(loops, model, curve, odd, given, method, bounds, progress=False):
+def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, passes=(25, 40)):
     """Parametrisation, vector and misfit; from the second lag too where the first one leaves much."""
     best, fixed = None, 0.0 if given is None else given
     for tau in _lags(loops, model, curve, odd, given):
         made, x = _start(loops, model, curve, odd, tau, int(given is None))
         if method == "least_squares":
-            made, x = _sharpened(loops, made, x, fixed, bounds, progress)
+            made, x = _sharpened(loops, made, x, fixed, bounds, progress, passes)
         found = made, x, solve.misfit(loops.coarse(2) if method == "energy" else loops, made, x, fixed)
         if best is None or _norm(found[2]) < _norm(best[2]):
             best = found
@@ -201,11 +206,11 @@ def _fitted(loops, model, curve, odd, given, method, bounds, progress=False):
     return best
 
 
-def _sharpened(loops, made, x, fixed, bounds, progress):
+def _sharpened(loops, made, x, fixed, bounds, progress, passes=(25, 40)):
     """Least squares; a curve gets nodes after its start, and once more where it then leaves more than noise."""
     if made.damping_nodes is None:
         return solve.refine(loops, made, x, fixed, bounds, progress)
-    for most in (25, 40):
+    for most in passes:
         made, x = solve.with_better_nodes(loops, made, x)
         made, x = solve.refine(loops, made, x, fixed, bounds, progress, most)
         if _norm(solve.misfit(loops, made, x, fixed)) < np.hypot(_GOOD, 1.1 * solve.noise_floor(loops)):
@@ -253,7 +258,7 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
     if method == "least_squares":
         freedom = misfit.size - x.size
         jacobian = solve.evidence(loops, made, x, fixed)
-        spread = covariance(jacobian, misfit, freedom)
+        spread = covariance(jacobian, solve.entry_deviations(loops, made.damping_nodes is not None or made.stiffness_nodes is not None), misfit)
         confidence = intervals(made, x, spread, freedom)
         told = identifiability(made, x, jacobian, spread, made.bounds(bounds))
     tests = _errors(cleaned, loops, damper, lag)
@@ -311,6 +316,6 @@ def _message(loops, model, method, misfit, lag, lag_known, made, x, stiffness, d
 def _better(loops, model, method, given, misfit):
     """The first costlier model that leaves less than half of the misfit."""
     for other in MODELS[MODELS.index(model) + 1:]:
-        if _norm(_fitted(loops, other, True, _is_odd(loops), given, "energy" if method == "energy" else method, None)[2]) < 0.5 * misfit:
+        if _norm(_fitted(loops, other, True, _is_odd(loops), given, method, None, passes=(12,))[2]) < 0.5 * misfit:
             return other
     return None

@@ -21,9 +21,9 @@ from railsym.dampers.models import curve_value
 from railsym.errors import CoreError
 
 _STEP = 1e-5          # of the logarithms and rises, for the change of curves
-_SOFT = 0.5           # standard deviation of the relative change of slope from node to node
+_SOFT = 0.06          # standard deviation of the relative change of slope from node to node
 _LEAST_NOISE = 1e-3   # relative misfit that curves of a few nodes leave even without noise
-_STIFFER = 30.0       # times as much smoothness in the first, quick pass: nodes beyond the tests must not run away
+_BENCH_ERROR = 3e-5   # relative misfit by the bench's steps
 _WIDEST = 1.5         # of the ends' speed: the damper itself is hardly faster
 
 
@@ -61,7 +61,15 @@ def misfit(loops, made, x, fixed, state=None):
 
 def noise_floor(loops):
     """Relative misfit that noise leaves in the harmonics."""
-    return float(np.sqrt(np.mean((loops.noise / loops.scale) ** 2 * 2.0 * loops.kept.sum(axis=1) / loops.samples)))
+    return float(np.sqrt(np.mean(0.5 * np.sum((loops.deviation * loops.kept) ** 2, axis=1) / loops.scale**2)))
+
+
+def entry_deviations(loops, curves):
+    """Standard deviation of each entry of the misfit: noise, and what the nodes of curves (or the bench's steps) leave, spread over the entries."""
+    least = _LEAST_NOISE if curves else _BENCH_ERROR
+    noise = loops.deviation / (2.0 * np.sqrt(len(loops.scale)) * loops.scale[:, None])
+    part = np.hypot(noise, least / np.sqrt(2.0 * loops.kept.sum()))[loops.kept]
+    return np.concatenate([part, part])
 
 
 def _damping(record, speed):
@@ -97,16 +105,21 @@ def jacobian(loops, made, x, fixed, state=None):
     """Slopes of `misfit` (2 kept, unknowns)."""
     record = made.model(x).force_law_record()
     force, s = steady(loops, made.model(x), state)
-    count_d, count_k, _ = made.sizes
+    count_d = made.sizes[0]
     speed = loops.velocity if made.kind == "viscous" else own_speed(record, force)
-    changed = [made.model(x + _STEP * unit).force_law_record() for unit in np.eye(x.size)[:count_d + count_k]]
-    base = _damping(record, speed)[0]
-    d_damping = np.array([(_damping(one, speed)[0] - base) / _STEP for one in changed[:count_d]])
+    damping, stiffening, _ = made.split(x)
+    if made.damping_nodes is None:
+        d_damping = (record["damping"] * speed)[None]
+    else:
+        d_damping = _curve_changes(made.damping_nodes, made.forces, damping, speed, odd=True)
     if made.kind == "viscous":
         change = d_damping
     else:
         stiffness = _stiffness(record, loops.velocity) + np.zeros_like(force)
-        d_stiffness = np.array([(_stiffness(one, loops.velocity) - stiffness) / _STEP for one in changed[count_d:]])
+        if made.stiffness_nodes is None:
+            d_stiffness = stiffness[None]
+        else:
+            d_stiffness = _curve_changes(made.stiffness_nodes, made.stiffnesses, stiffening, np.abs(loops.velocity), odd=False)
         spring = np.concatenate([np.zeros_like(d_damping), d_stiffness * (loops.displacement - s)])
         target = (spring - np.concatenate([d_damping, np.zeros_like(spring[count_d:])])) / stiffness
         change = spring - stiffness * _periodic(target, stiffness / np.maximum(_damping(record, speed)[1], 1e-3), loops.period)
@@ -117,6 +130,21 @@ def jacobian(loops, made, x, fixed, state=None):
     turning = -1j * (1 + np.arange(loops.harmonics.shape[1])) * loops.angular[:, None]
     turned = _flat(loops, harmonics_of(loops, force, lag) * turning * made.lag_unit)
     return np.concatenate([columns, turned[None]]).T
+
+
+def _curve_changes(nodes, values_of, x, at, odd):
+    """Changes (unknowns, ...) at ``at`` of a monotone cubic whose values at the nodes are ``values_of`` the unknowns."""
+    from scipy.interpolate import PchipInterpolator
+
+    values = np.array([values_of(one) for one in (x, *(x + _STEP * np.eye(x.size)))])
+    if odd and nodes[0] == 0.0:
+        nodes, values = np.concatenate([-nodes[:0:-1], nodes]), np.concatenate([-values[:, :0:-1], values], axis=1)
+    curve = PchipInterpolator(nodes, values, axis=1)
+    inside = np.clip(at, nodes[0], nodes[-1])
+    found = curve(inside)
+    if (inside != at).any():
+        found = found + (at - inside) * curve.derivative()(inside)
+    return (found[1:] - found[0]) / _STEP
 
 
 def _periodic(target, rate, period):
@@ -148,9 +176,9 @@ def _roughness(made, x, weight):
     return weight / _SOFT * np.concatenate(rows) if rows else np.zeros(0)
 
 
-def _weight(loops, left=0.0):
-    """Size of the error of one entry of the misfit; ``left`` is what a first fit left."""
-    return max(noise_floor(loops), _LEAST_NOISE, left) / np.sqrt(2.0 * loops.kept.sum())
+def _weight(loops):
+    """Size of the error of one entry of the misfit."""
+    return max(noise_floor(loops), _LEAST_NOISE) / np.sqrt(2.0 * loops.kept.sum())
 
 
 def evidence(loops, made, x, fixed, weight=None):
@@ -161,13 +189,13 @@ def evidence(loops, made, x, fixed, weight=None):
     return np.concatenate([jacobian(loops, made, x, fixed), rows])
 
 
-def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False, left=0.0):
+def refine(loops, made, x, fixed, bounds, progress=False, most=40):
     """Least squares from ``x``; its parametrisation and vector."""
     from scipy.optimize import least_squares
 
     low, high = made.bounds(bounds)
     state = np.zeros_like(loops.force)
-    weight = _weight(loops, left) * (_STIFFER if quick else 1.0)
+    weight = _weight(loops)
 
     def function(p):
         return np.concatenate([misfit(loops, made, p, fixed, state), _roughness(made, p, weight)])
@@ -175,9 +203,8 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False, 
     x = np.clip(x, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
     if not np.isfinite(function(x)).all():
         return made, x
-    tolerance = 1e-3 if quick else 1e-6
-    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight), bounds=(low, high), x_scale="jac", ftol=tolerance,
-                          xtol=0.1 * tolerance, gtol=1e-12, max_nfev=most, verbose=2 if progress else 0)
+    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight), bounds=(low, high), x_scale="jac", ftol=1e-5,
+                          xtol=1e-6, gtol=1e-12, max_nfev=most, verbose=2 if progress else 0)
     return made, found.x
 
 
