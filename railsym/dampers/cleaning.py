@@ -59,7 +59,7 @@ def clean(record, *, check_units=True):
         notes.append(f"{record.label}: the force drifts by {100 * drift:.1f} % of its amplitude; taken off")
     # the kept cycles go round, so that they begin where the displacement passes 0
     cycles = np.roll(cycles.reshape(len(cycles), -1), -start, axis=1).reshape(cycles.shape)
-    faults += _checked(record, frequency, cycles, check_units)
+    faults += checks.check_flat(record, cycles[1]) + _checked(record, frequency, cycles, check_units)
     return _assembled(record, frequency, cycles, notes, faults, inside)
 
 
@@ -99,8 +99,8 @@ def _whole_cycles(record):
     channels = channels[:, periodic.moving_part(channels[0])]
     duration = step * (channels.shape[1] - 1)
     frequency, phase = periodic.frequency_of(channels[0], step)
-    checks.check_frequency(record, frequency, step, duration)
     faults = checks.check_gap(record, gap, frequency)
+    checks.check_frequency(record, frequency, step, duration)
     block = max(1, int(1.0 / (frequency * step) / _FEWEST_SAMPLES))
     blocks, inside = periodic.block_means(channels, block)
     phase, step = phase + np.pi * frequency * step * (block - 1), block * step
@@ -183,28 +183,36 @@ def _scatter(cycles):
 
 
 def _deviation(cycles, orders=31):
-    """Standard deviation (N) of the mean harmonics of the force, as `CleanRecord` has it.
+    """Standard deviation (N) of the mean harmonics of the force, as `CleanRecord` has it."""
+    (motion, by_motion), (force, by_force) = (_mean_harmonics(one, orders) for one in cycles[:2])
+    by_force[0] = np.hypot(by_force[0], abs(force[0] / motion[0]) * by_motion[0])
+    return by_force
 
-    Neighbouring orders share their variance (five of them), since a few cycles alone tell little.
+
+def _mean_harmonics(cycles, orders):
+    """Mean harmonics from order 1 of the cycles (cycles, samples), and their standard deviation.
+
+    Neighbouring orders share their variance (five of them), since a few cycles alone tell little; noise need not be white.
     """
-    count, top = cycles.shape[2], min(orders, (cycles.shape[2] - 1) // 2)
-    harmonics = np.fft.rfft(cycles[:2], axis=2)[:, :, 1:1 + top] * 2.0 / count
-    mean = harmonics.mean(axis=1)
-    variance = np.sum(np.abs(harmonics - mean[:, None]) ** 2, axis=1) / (cycles.shape[1] * (cycles.shape[1] - 1))
-    shared = np.array([np.convolve(one, np.ones(5))[2:-2] for one in variance]) / np.convolve(np.ones(top), np.ones(5))[2:-2]
-    shared[1, 0] += abs(mean[1, 0] / mean[0, 0]) ** 2 * shared[0, 0]
-    return np.sqrt(shared[1])
+    number, count = cycles.shape
+    top = min(orders, (count - 1) // 2)
+    harmonics = np.fft.rfft(cycles, axis=1)[:, 1:1 + top] * 2.0 / count
+    mean = harmonics.mean(axis=0)
+    variance = np.sum(np.abs(harmonics - mean) ** 2, axis=0) / (number * (number - 1))
+    shared = np.convolve(variance, np.ones(5))[2:-2] / np.convolve(np.ones(top), np.ones(5))[2:-2]
+    return mean, np.sqrt(shared)
 
 
 def _imposed_motion(cycles, frequency):
     """Displacement and velocity of one cycle from the harmonics that stand out of the noise; offset left out."""
-    number, count = cycles.shape
-    spectrum = np.fft.rfft(cycles.mean(axis=0)) * 2.0 / count
-    floor = max(5.0 * _scatter(cycles) * np.sqrt(2.0 / (number * count)), 1e-5 * abs(spectrum[1]))
-    order = np.arange(spectrum.size)
-    keep = (order == 1) | ((order > 1) & (order <= _MOST_HARMONICS) & (np.abs(spectrum) > floor) & (order < count // 2))
-    spectrum = np.where(keep, spectrum, 0.0) * count / 2.0
-    return np.fft.irfft(spectrum, count), np.fft.irfft(spectrum * 2j * np.pi * frequency * order, count)
+    count = cycles.shape[1]
+    mean, deviation = _mean_harmonics(cycles, _MOST_HARMONICS)
+    # a complex error beyond 3.5 deviations: exp(-12)
+    clear = np.abs(mean) > np.maximum(3.5 * deviation, 1e-5 * abs(mean[0]))
+    clear[0] = True
+    spectrum = np.zeros(count // 2 + 1, dtype=complex)
+    spectrum[1:1 + mean.size] = np.where(clear, mean, 0.0) * count / 2.0
+    return np.fft.irfft(spectrum, count), np.fft.irfft(spectrum * 2j * np.pi * frequency * np.arange(spectrum.size), count)
 
 
 def _force_offset(force, rate, frequency, noise):

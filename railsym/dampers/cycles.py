@@ -9,6 +9,7 @@ import numpy as np
 
 _JITTER = 1e-3          # of a step: below it samples count as uniform
 _GAP = 1.6              # steps: a longer one is a gap
+_SPLINED = 20           # steps: the longest gap that a spline fills
 _STEADY = 0.003         # of the first harmonic: a cycle that differs by less belongs to the steady ones
 FEWEST_CYCLES = 3
 
@@ -39,6 +40,9 @@ def uniform(time, channels):
     from scipy.interpolate import CubicSpline
 
     grid = np.arange(time[0], time[-1], step)
+    if gap > _SPLINED * step:
+        # a spline through a long gap would swing far out; the gap is refused later, with its place
+        return step, np.array([np.interp(grid, time, one) for one in channels]), gap
     return step, CubicSpline(time, channels, axis=1)(grid), gap
 
 

@@ -5,7 +5,7 @@ The steady force of F = k(|v|) (e - s) = D(w), w = ds/dt, changes with the param
 
     dF = dk (e - s) - k ds,     D'(w) d(ds)/dt = dk (e - s) - k ds - dD(w)
 
-which is linear in ds and periodic. It is stepped here exactly for coefficients constant over a step; the bench itself gives the
+which is linear in ds and periodic. It is stepped here exactly for rates constant and targets linear over a step; the bench itself gives the
 force, so that the error of these steps slows the iteration down but moves its end by no more than that times the misfit.
 """
 
@@ -103,6 +103,8 @@ def own_speed(record, force):
 
 def jacobian(loops, made, x, fixed, state=None):
     """Slopes of `misfit` (2 kept, unknowns)."""
+    if made.damping_nodes is None and made.stiffness_nodes is None and made.kind == "maxwell":
+        return _linear_jacobian(loops, made, x, fixed)
     record = made.model(x).force_law_record()
     force, s = steady(loops, made.model(x), state)
     count_d = made.sizes[0]
@@ -132,6 +134,20 @@ def jacobian(loops, made, x, fixed, state=None):
     return np.concatenate([columns, turned[None]]).T
 
 
+def _linear_jacobian(loops, made, x, fixed):
+    """Slopes for constants, closed: F = K X, 1/K = 1/k + 1/(i omega c), order by order."""
+    damping, stiffness, _ = (np.exp(part) for part in made.split(x))
+    order = 1 + np.arange(loops.harmonics.shape[1])
+    turning = 1j * order * loops.angular[:, None]
+    lag = made.lag(x) if made.lags else fixed
+    motion = harmonics_of(loops, loops.displacement, lag)
+    dynamic = 1.0 / (1.0 / stiffness[0] + 1.0 / (turning * damping[0]))
+    slopes = [motion * dynamic**2 / (turning * damping[0]), motion * dynamic**2 / stiffness[0]]
+    if made.lags:
+        slopes.append(-turning * made.lag_unit * motion * dynamic)
+    return _flat(loops, np.array(slopes)).T
+
+
 def _curve_changes(nodes, values_of, x, at, odd):
     """Changes (unknowns, ...) at ``at`` of a monotone cubic whose values at the nodes are ``values_of`` the unknowns."""
     from scipy.interpolate import PchipInterpolator
@@ -151,8 +167,9 @@ def _periodic(target, rate, period):
     """Periodic solution of dy/dt = rate (target - y): target (unknowns, tests, points), rate (tests, points) in 1/s."""
     points = rate.shape[1]
     middle = 0.5 * (rate + np.roll(rate, -1, axis=1))
-    keep = np.exp(-middle * (period / points)[:, None])
-    gain = (1.0 - keep) * 0.5 * (target + np.roll(target, -1, axis=2))
+    turns = middle * (period / points)[:, None]
+    keep, share = np.exp(-turns), -np.expm1(-turns) / np.maximum(turns, 1e-12)
+    gain = (share - keep) * target + (1.0 - share) * np.roll(target, -1, axis=2)
     out = np.zeros_like(target)
     now = np.zeros(target.shape[:2])
     for k in range(points):
@@ -181,12 +198,12 @@ def _weight(loops):
     return max(noise_floor(loops), _LEAST_NOISE) / np.sqrt(2.0 * loops.kept.sum())
 
 
-def evidence(loops, made, x, fixed, weight=None):
+def evidence(loops, made, x, fixed, weight=None, state=None):
     """Slopes of the misfit and, below them, of the wish for smooth curves."""
     weight = _weight(loops) if weight is None else weight
     own = _roughness(made, x, weight)
     rows = np.array([(_roughness(made, x + _STEP * unit, weight) - own) / _STEP for unit in np.eye(x.size)]).T
-    return np.concatenate([jacobian(loops, made, x, fixed), rows])
+    return np.concatenate([jacobian(loops, made, x, fixed, state), rows])
 
 
 def refine(loops, made, x, fixed, bounds, progress=False, most=40):
@@ -203,7 +220,7 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40):
     x = np.clip(x, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
     if not np.isfinite(function(x)).all():
         return made, x
-    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight), bounds=(low, high), x_scale="jac", ftol=1e-5,
+    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight, state), bounds=(low, high), x_scale="jac", ftol=1e-5,
                           xtol=1e-6, gtol=1e-12, max_nfev=most, verbose=2 if progress else 0)
     return made, found.x
 
