@@ -68,8 +68,9 @@ class Loops:
         """The loop of one test."""
         return replace(self, **{name: getattr(self, name)[test:test + 1] for name in self.__dataclass_fields__})
 
-    def coarse(self, step=4):
-        """Every so many points; 64 points a cycle are enough for 31 harmonics."""
+    def coarse(self, step=None):
+        """Every so many points; without ``step`` down to 64 a cycle, which are enough for 31 harmonics."""
+        step = max(1, self.force.shape[1] // 64) if step is None else step
         return replace(self, displacement=self.displacement[:, ::step], velocity=self.velocity[:, ::step], force=self.force[:, ::step])
 
     @property

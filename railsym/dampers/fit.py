@@ -21,6 +21,7 @@ _GOOD = 1e-3                  # relative misfit below which a constant is enough
 _DOUBTFUL = 0.02              # relative misfit above which a fit is begun again from another lag
 _NO_MODEL = {"energy": 0.15, "least_squares": 0.05}  # relative misfit above which a model is wrong even if none is better
 _CONSTANT = 0.04             # a stiffness that changes by less over the tests is constant
+_WRONG = 0.03                 # relative misfit of a curve above which the model cannot be right
 _HOPELESS = 0.05              # relative misfit of constants by the energy method above which a curve is needed
 _STEEPEST = 100.0             # times the equivalent damping: the start of a curve
 _EVEN = 2e-3                  # even harmonics above this part of the force, and above noise: not symmetric
@@ -210,11 +211,15 @@ def _sharpened(loops, made, x, fixed, bounds, progress, passes=(25, 40)):
     """Least squares; a curve gets nodes after its start, and once more where it then leaves more than noise."""
     if made.damping_nodes is None:
         return solve.refine(loops, made, x, fixed, bounds, progress)
+    left = 0.0
     for most in passes:
         made, x = solve.with_better_nodes(loops, made, x)
-        made, x = solve.refine(loops, made, x, fixed, bounds, progress, most)
-        if _norm(solve.misfit(loops, made, x, fixed)) < np.hypot(_GOOD, 1.1 * solve.noise_floor(loops)):
+        made, x = solve.refine(loops, made, x, fixed, bounds, progress, most, left)
+        misfit = _norm(solve.misfit(loops, made, x, fixed))
+        if misfit < np.hypot(_GOOD, 1.1 * solve.noise_floor(loops)):
             break
+        # what a wrong model leaves is no reason for a curve with steps
+        left = min(misfit, 0.2) if misfit > np.hypot(_WRONG, 3.0 * solve.noise_floor(loops)) else 0.0
     return made, x
 
 
@@ -225,7 +230,7 @@ def _start(loops, model, curve, odd, tau, lags):
     kind, rising, at = "viscous" if model == "viscous" else "maxwell", True, None
     if kind == "maxwell" and (curve or nodes is not None):
         found = elongation.refined_elongation(shifted, nodes, odd) if curve else elongation.split_elongation(shifted, nodes, True, _one_level(loops))
-        stiffness, rising = _monotone(1.0 / found.compliance if nodes is None else 1.0 / np.maximum(found.compliance, 1e-10))
+        stiffness, rising = _monotone(1.0 / np.maximum(found.compliance, 1e-10))
         at, curve_force = found.speed, found.force
         value = max(float(found.force[-1] / max(found.speed[-1], 1e-12)), 1.0)
         if curve:
@@ -265,7 +270,7 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
     shifted = loops.shifted(lag)
     stiffness = damper.series_stiffness
     if made.kind == "maxwell" and stiffness is None:
-        stiffness = 1.0 / max(float(elongation.split_elongation(shifted, None, made.damping_nodes is None or made.damping_nodes[0] == 0.0).compliance[0]), 1e-10)
+        stiffness = 1.0 / max(float(elongation.split_elongation(shifted.coarse(), None, made.damping_nodes is None or made.damping_nodes[0] == 0.0).compliance[0]), 1e-10)
     compliance = np.array([0.0 if stiffness is None else 1.0 / stiffness])
     damping = damper.damping or energy.dissipated(shifted, energy.damper_speed(shifted, compliance))
     message = _message(loops, model, method, _norm(misfit), lag, lag_known, made, x, stiffness, damping, told)
@@ -314,8 +319,9 @@ def _message(loops, model, method, misfit, lag, lag_known, made, x, stiffness, d
 
 
 def _better(loops, model, method, given, misfit):
-    """The first costlier model that leaves less than half of the misfit."""
+    """The first costlier model that leaves less than half of the misfit, by a quarter of the points."""
+    quick = loops.coarse()
     for other in MODELS[MODELS.index(model) + 1:]:
-        if _norm(_fitted(loops, other, True, _is_odd(loops), given, method, None, passes=(12,))[2]) < 0.5 * misfit:
+        if _norm(_fitted(quick, other, True, _is_odd(loops), given, method, None, passes=(12,))[2]) < 0.5 * misfit:
             return other
     return None

@@ -12,7 +12,7 @@ FREQUENCY = (0.02, 60.0)            # Hz
 AMPLITUDE = (2e-5, 0.2)             # m
 FORCE = (2.0, 1e6)                  # N
 DYNAMIC_STIFFNESS = (2e4, 3e8)      # N/m
-_FLAT_BAND, _FLAT_SHARE = 0.01, 0.15
+_FLAT_BAND, _FLAT_SHARE = 0.0025, 0.12
 _TURNED = 0.2                       # of the median dynamic stiffness
 _UNITS = "check the units (m, N and s are expected), or call with check_units=False if the record is right"
 
@@ -41,10 +41,10 @@ def check_clipping(record):
 
 
 def check_flat(record, force):
-    """A message where the force of the mean cycle stands within a hundredth of its range at its highest or lowest value.
+    """A message where the force of the mean cycle stands within a 400th of its range at its highest or lowest value.
 
     Noise after the clipping hides it from `check_clipping`; a blow-off valve without slope looks the same, so this is no error.
-    A sine is there for a sixteenth of its cycle.
+    A sine is there for 3 % of its cycle.
     """
     mean = force.mean(axis=0)
     span = np.ptp(mean)

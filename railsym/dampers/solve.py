@@ -193,9 +193,9 @@ def _roughness(made, x, weight):
     return weight / _SOFT * np.concatenate(rows) if rows else np.zeros(0)
 
 
-def _weight(loops):
-    """Size of the error of one entry of the misfit."""
-    return max(noise_floor(loops), _LEAST_NOISE) / np.sqrt(2.0 * loops.kept.sum())
+def _weight(loops, left=0.0):
+    """Size of the error of one entry of the misfit; ``left`` is what a model leaves that is wrong."""
+    return max(noise_floor(loops), _LEAST_NOISE, left) / np.sqrt(2.0 * loops.kept.sum())
 
 
 def evidence(loops, made, x, fixed, weight=None, state=None):
@@ -206,13 +206,13 @@ def evidence(loops, made, x, fixed, weight=None, state=None):
     return np.concatenate([jacobian(loops, made, x, fixed, state), rows])
 
 
-def refine(loops, made, x, fixed, bounds, progress=False, most=40):
+def refine(loops, made, x, fixed, bounds, progress=False, most=40, left=0.0):
     """Least squares from ``x``; its parametrisation and vector."""
     from scipy.optimize import least_squares
 
     low, high = made.bounds(bounds)
     state = np.zeros_like(loops.force)
-    weight = _weight(loops)
+    weight = _weight(loops, left)
 
     def function(p):
         return np.concatenate([misfit(loops, made, p, fixed, state), _roughness(made, p, weight)])
