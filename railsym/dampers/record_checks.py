@@ -12,7 +12,7 @@ FREQUENCY = (0.02, 60.0)            # Hz
 AMPLITUDE = (2e-5, 0.2)             # m
 FORCE = (2.0, 1e6)                  # N
 DYNAMIC_STIFFNESS = (2e4, 3e8)      # N/m
-_FLAT_BAND, _FLAT_SHARE = 0.0025, 0.12
+_FLAT_BAND, _FLAT_SHARE = 0.0025, 0.15
 _TURNED = 0.2                       # of the median dynamic stiffness
 _UNITS = "check the units (m, N and s are expected), or call with check_units=False if the record is right"
 
