@@ -263,7 +263,9 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
     if method == "least_squares":
         freedom = misfit.size - x.size
         jacobian = solve.evidence(loops, made, x, fixed)
-        spread = covariance(jacobian, solve.entry_deviations(loops, made.damping_nodes is not None or made.stiffness_nodes is not None), misfit)
+        whiten = solve.entry_weights(loops)
+        deviation = solve.entry_deviations(loops, made.damping_nodes is not None or made.stiffness_nodes is not None)
+        spread = covariance(jacobian, deviation * whiten, misfit * whiten)
         confidence = intervals(made, x, spread, freedom)
         told = identifiability(made, x, jacobian, spread, made.bounds(bounds))
     tests = _errors(cleaned, loops, damper, lag)

@@ -72,6 +72,12 @@ def entry_deviations(loops, curves):
     return np.concatenate([part, part])
 
 
+def entry_weights(loops):
+    """Weights that make the noise of all entries equal, where it is more than what nodes leave; their mean square error stays."""
+    deviation = entry_deviations(loops, True)
+    return np.sqrt(np.mean(deviation**2)) / deviation
+
+
 def _damping(record, speed):
     """Force D (N) and slope (N s/m) of the damper's own law."""
     table = record.get("damping_curve")
@@ -203,7 +209,7 @@ def evidence(loops, made, x, fixed, weight=None, state=None):
     weight = _weight(loops) if weight is None else weight
     own = _roughness(made, x, weight)
     rows = np.array([(_roughness(made, x + _STEP * unit, weight) - own) / _STEP for unit in np.eye(x.size)]).T
-    return np.concatenate([jacobian(loops, made, x, fixed, state), rows])
+    return np.concatenate([jacobian(loops, made, x, fixed, state) * entry_weights(loops)[:, None], rows])
 
 
 def refine(loops, made, x, fixed, bounds, progress=False, most=40, left=0.0):
@@ -214,8 +220,10 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40, left=0.0):
     state = np.zeros_like(loops.force)
     weight = _weight(loops, left)
 
+    whiten = entry_weights(loops)
+
     def function(p):
-        return np.concatenate([misfit(loops, made, p, fixed, state), _roughness(made, p, weight)])
+        return np.concatenate([misfit(loops, made, p, fixed, state) * whiten, _roughness(made, p, weight)])
 
     x = np.clip(x, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
     if not np.isfinite(function(x)).all():
