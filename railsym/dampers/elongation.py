@@ -24,7 +24,7 @@ _SMALLEST = 0.3      # of the peak force of the smallest test: the lowest levels
 _RIDGE = 1e-12       # of the normal equations, against columns that no test tells apart
 _SOFT = 0.1          # standard deviation of the relative change of slope from level to level
 _PARTS = 62          # independent errors in a cycle: real and imaginary parts of 31 harmonics
-_FEW_LEVELS = 12     # enough to tell the lag
+_LAG_LEVELS = 18     # with 12 the lag is three times as far off
 _GRID = 11           # lags of the first look
 
 
@@ -169,7 +169,7 @@ def lag_by_elongation(loops, speed_nodes=None, symmetric=True, levels=None):
     from scipy.optimize import minimize_scalar
 
     loops = loops.coarse()
-    levels = force_levels(loops, symmetric, _FEW_LEVELS) if levels is None else levels
+    levels = force_levels(loops, symmetric, _LAG_LEVELS) if levels is None else levels
 
     def left(lag):
         return split_elongation(loops.shifted(lag), speed_nodes, symmetric, levels).misfit
@@ -177,4 +177,4 @@ def lag_by_elongation(loops, speed_nodes=None, symmetric=True, levels=None):
     grid = np.linspace(-LARGEST_LAG, LARGEST_LAG, _GRID)
     k = int(np.argmin([left(lag) for lag in grid]))
     around = grid[max(k - 1, 0)], grid[min(k + 1, _GRID - 1)]
-    return float(minimize_scalar(left, bounds=around, method="bounded", options={"xatol": 2e-5, "maxiter": 12}).x)
+    return float(minimize_scalar(left, bounds=around, method="bounded", options={"xatol": 1e-5, "maxiter": 20}).x)

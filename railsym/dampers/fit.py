@@ -199,7 +199,7 @@ def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, pas
         made, x = _start(loops, model, curve, odd, tau, int(given is None))
         if method == "least_squares":
             made, x = _sharpened(loops, made, x, fixed, bounds, progress, passes)
-        found = made, x, solve.misfit(loops.coarse(2) if method == "energy" else loops, made, x, fixed)
+        found = made, x, solve.misfit(loops.coarse(max(1, loops.force.shape[1] // 128)) if method == "energy" else loops, made, x, fixed)
         if best is None or _norm(found[2]) < _norm(best[2]):
             best = found
         if _norm(best[2]) < (_NO_MODEL[method] if method == "energy" else np.hypot(_DOUBTFUL, 2.0 * solve.noise_floor(loops))):
