@@ -79,7 +79,8 @@ enum {
 	RS_CREEP_SHEN_HEDRICK_ELKINS = 1,
 	RS_CREEP_POLACH = 2,
 	RS_CREEP_FASTSIM = 3,
-	RS_CREEP_FASTRIP = 4
+	RS_CREEP_FASTRIP = 4,
+	RS_CREEP_EXACT = 5
 };
 enum { RS_CREEP_INPUTS = 15 };
 
@@ -90,3 +91,12 @@ enum { RS_OUT_OF_TABLE = 6 };
 enum { RS_ZONES = 3, RS_PLACE_SIZE = 4 };
 
 typedef struct rs_contact_table rs_contact_table;
+
+typedef struct {
+	int pieces;                  /* of the spline, a unit of each axis of the half ball */
+	int ratio_pieces;            /* over log(a/b) */
+	double least, largest;       /* a/b */
+	const float *coefficients;   /* pieces + 2, 2 pieces + 2, ratio_pieces + 2, pieces + 2, 4: see creep/exact_table.c */
+} rs_creep_table;
+
+int rs_creep_forces_exact(const rs_creep_table *table, int contacts, const double *in, double *force, double *slopes);
