@@ -96,7 +96,7 @@ typedef struct {
 	int pieces;                  /* of the spline, a unit of each axis of the half ball */
 	int ratio_pieces;            /* over log(a/b) */
 	double least, largest;       /* a/b */
-	const float *coefficients;   /* pieces + 2, 2 pieces + 2, ratio_pieces + 2, pieces + 2, 4: see creep/exact_table.c */
+	const double *coefficients;  /* pieces + 2, 2 pieces + 2, ratio_pieces + 2, pieces + 2, 3, one more: creep/exact_table.c */
 } rs_creep_table;
 
 int rs_creep_forces_exact(const rs_creep_table *table, int contacts, const double *in, double *force, double *slopes);

@@ -26,10 +26,9 @@ def creep_table():
     with as_file(files("railsym") / "data" / "contact" / "exact_table.npz") as path, np.load(path) as kept:
         coefficients, (least, largest) = kept["coefficients"] * kept["scale"], kept["ratio_range"]
     ratios, first, _, pieces, _ = coefficients.shape
-    whole = np.zeros((first, coefficients.shape[2], ratios, pieces, 4), dtype=np.float32)
-    whole[..., :3] = np.moveaxis(coefficients, 0, 2)
+    whole = np.append(np.moveaxis(coefficients, 0, 2).ravel(), 0.0)
     table = ffi.new("rs_creep_table *", {"pieces": pieces - 2, "ratio_pieces": ratios - 2, "least": least, "largest": largest,
-                                         "coefficients": ffi.from_buffer("float[]", whole)})
+                                         "coefficients": ffi.from_buffer("double[]", whole)})
     _KEPT.append(whole)
     return table
 

@@ -10,7 +10,8 @@
  * (-s1): Tx changes sign; (-s2, -s3): Ty and Tm do. Slopes of h are those of this interpolation. Outside the table's
  * a/b T is that of its end; Kalker's coefficients, k and the arm go on.
  *
- * Table: [s1][s2][a/b][s3][4] = Tx, Ty, Tm, unused; the coefficient before each plane s1 = 0, s3 = 0 is stored too.
+ * Table: [s1][s2][a/b][s3][3] = Tx, Ty, Tm, and one number more at the end: three are read as four. The coefficient
+ * before each plane s1 = 0, s3 = 0 is stored too.
  */
 #include <stddef.h>
 
@@ -23,12 +24,10 @@
 #if defined(__GNUC__)
 #define PARTS 4
 typedef double part __attribute__((vector_size(8 * PARTS), may_alias));
-typedef float stored __attribute__((vector_size(4 * PARTS), may_alias, aligned(4)));
-#define VALUE_AT(to, from) ((to) = __builtin_convertvector(*(const stored *)(from), part))
+typedef double stored __attribute__((vector_size(8 * PARTS), may_alias, aligned(8)));
 #else
 #define PARTS 1
-typedef double part;
-#define VALUE_AT(to, from) ((to) = *(from))
+typedef double part, stored;
 #endif
 
 typedef struct {
@@ -81,24 +80,21 @@ RS_INLINE int weights(double at, int last, double pieces, double *w, double *d)
 /* T and its slopes at one contact. */
 RS_INLINE void look_up(const rs_creep_table *table, int slopes, const double *place, double (*to)[4])
 {
-	int n = table->pieces, row = 4 * (n + 2), sheet = row * (table->ratio_pieces + 2), block = sheet * (2 * n + 2);
+	int n = table->pieces, row = 3 * (n + 2), sheet = row * (table->ratio_pieces + 2), block = sheet * (2 * n + 2);
 	double w[4][3], d[4][3];
 	int i = weights(place[0], n - 1, n, w[0], d[0]), j = weights(place[1], 2 * n - 1, n, w[1], d[1]);
 	int m = weights(place[2], n - 1, n, w[2], d[2]), r = weights(place[3], table->ratio_pieces - 1, 0.0, w[3], d[3]);
-	const float *corner = table->coefficients + (size_t)i * block + (size_t)j * sheet + r * row + 4 * m;
-	for (int c = 0; c < 4; c += PARTS) {
+	const double *corner = table->coefficients + (size_t)i * block + (size_t)j * sheet + r * row + 3 * m;
+	for (int c = 0; c < 3; c += PARTS) {
 		part all = {0}, d1 = {0}, d2 = {0}, d3 = {0};
 		for (int x = 0; x < 3; x++) {
 			part over = {0}, over_2 = {0}, over_3 = {0};
 			for (int y = 0; y < 3; y++) {
-				const float *at = corner + x * block + y * sheet + c;
+				const double *at = corner + x * block + y * sheet + c;
 				part sum = {0}, slope = {0};
 				for (int z = 0; z < 3; z++) {
-					part a, b, e;
-					VALUE_AT(a, at + 4 * z);
-					VALUE_AT(b, at + row + 4 * z);
-					VALUE_AT(e, at + 2 * row + 4 * z);
-					a = w[3][0] * a + w[3][1] * b + w[3][2] * e;
+					const stored *low = (const stored *)(at + 3 * z), *mid = (const stored *)(at + row + 3 * z);
+					part a = w[3][0] * *low + w[3][1] * *mid + w[3][2] * *(const stored *)(at + 2 * row + 3 * z);
 					sum += w[2][z] * a;
 					slope += d[2][z] * a;
 				}

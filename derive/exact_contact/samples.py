@@ -12,9 +12,9 @@ POISSON = 0.28
 LEAST, LARGEST, PIECES = 0.1, 10.0, 10  # of a/b; pieces of the spline over log(a/b)
 CELLS = 600
 _SEED = 20
-_POINTS = 4200, 500, 40, 600        # inside, on a plane of symmetry, on an axis, on the surface
-_MORE_POINTS = 8000, 600, 40, 1500  # below _SLENDER: with spin, forces change faster the smaller a/b is
-_SLENDER = 0.4
+_POINTS = 8000, 600, 40, 1500       # inside, on a plane of symmetry, on an axis, on the surface
+_FEWER_POINTS = 4200, 500, 40, 600  # above _LONG, where a solution costs ten times as much
+_LONG = 6.0
 _LARGEST_RADIUS = 0.99  # beyond: full slip
 
 
@@ -43,7 +43,7 @@ def points(ratio):
         inside = cube(dimension, count)
         return inside[np.linalg.norm(inside, axis=1) < _LARGEST_RADIUS][:count]
 
-    in_volume, in_plane, on_axis, on_surface = _MORE_POINTS if ratio < _SLENDER else _POINTS
+    in_volume, in_plane, on_axis, on_surface = _FEWER_POINTS if ratio > _LONG else _POINTS
     volume, plane = ball(3, in_volume), ball(2, in_plane)
     zero = np.zeros(len(plane))
     axis = (np.arange(on_axis) + 0.5) / on_axis * _LARGEST_RADIUS

@@ -10,7 +10,7 @@ import numpy as np
 from derive.exact_contact import fit, samples
 from derive.exact_contact.spline import HalfBall
 
-PIECES = 12  # of the half ball, a unit
+PIECES = 15  # of the half ball, a unit
 FILE = Path(__file__).resolve().parents[2] / "railsym" / "data" / "contact" / "exact_table.npz"
 
 
