@@ -141,7 +141,7 @@ def test_full_slip(ratio):
     turn = np.linspace(0.1, 6.2, 9)
     slide = 1e3 * np.stack([np.cos(turn), np.sin(turn), np.zeros(9)], axis=1)
     found = law(ratio, slide)
-    assert np.hypot(found[:, 0], found[:, 1]) == pytest.approx(1.0, abs=1e-12)
+    assert np.hypot(found[:, 0], found[:, 1]) == pytest.approx(1.0, abs=1e-5)
     assert found[:, :2] == pytest.approx(-slide[:, :2] / 1e3, abs=8e-3)
     e = random_creepages(ratio, 60, seed=3, sizes=(5, 6))
     rms, largest, moment_rms, moment_largest = distance(law(ratio, e), full_slip(ratio, e))

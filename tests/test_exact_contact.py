@@ -40,7 +40,7 @@ def test_line_contact_is_carters(part, compliance):
         assert abs(found[1 - part]) < 1e-6
 
 
-@pytest.mark.parametrize("ratio", (0.1, 0.2, 0.5, 1.0, 2.0, 5.0))
+@pytest.mark.parametrize("ratio", (0.1, 0.5, 1.0, 2.0, 5.0))
 def test_linear_theory_is_kalkers(ratio):
     """Extrapolated over two grids; his table is printed to three digits."""
     strips, cells = coarse_grid(ratio, 500)
@@ -48,7 +48,7 @@ def test_linear_theory_is_kalkers(ratio):
     c = kalker_coefficients(ratio, 0.28)
     found = (2 * fine - coarse) / np.array([c.c11, c.c22, c.c23, c.c23, c.c33])
     assert found[:4] == pytest.approx(1.0, abs=8e-3)
-    assert found[4] == pytest.approx(1.0, abs=0.03)  # C33 is the small difference of two large parts where a > b
+    assert found[4] == pytest.approx(1.0, abs=0.025)  # C33 is the small difference of two large parts where a > b
     assert fine[2] == pytest.approx(fine[3], rel=1e-3)  # C23 = C32, which nothing enforces
 
 
@@ -61,7 +61,7 @@ def test_small_creepage_is_linear():
 
 @pytest.mark.parametrize("ratio", (0.3, 1.0, 3.0))
 def test_solutions_satisfy_the_laws_of_rolling(ratio):
-    cells = patch(ratio, *coarse_grid(ratio, 800))
+    cells = patch(ratio, *coarse_grid(ratio, 400))
     creepages = np.array([[0.1, 0.05, 0.1], [0.0, -0.2, 0.3], [0.5, 0.2, 0.0], [0.02, 0.0, -0.6]])
     p = Rolling(cells).tractions(creepages, tolerance=1e-6).astype(float)
     slip = cells.slip @ p + cells.rigid @ creepages.T
@@ -93,8 +93,8 @@ def test_against_an_independent_code():
 
 def test_finer_grids_agree_with_the_extrapolation():
     e = np.array([[0.05, 0.1, 0.2], [0.2, 0.0, 0.1], [0.0, -0.1, 0.4]])
-    single = [Rolling(patch(1.0, n * 6, n * 9)).forces(e, 1e-5) for n in (1, 2, 3)]
-    extrapolated = Extrapolated(1.0, 860).forces(e, 1e-5)
+    single = [Rolling(patch(1.0, n * 4, n * 6)).forces(e, 1e-5) for n in (1, 2, 3)]
+    extrapolated = Extrapolated(1.0, 400).forces(e, 1e-5)
     errors = [np.abs(found - extrapolated).max() for found in single]
     assert errors[0] > 1.6 * errors[1] > 1.6 * 1.2 * errors[2]
 
@@ -106,7 +106,7 @@ def test_full_slip(ratio):
     assert np.hypot(*exact[2, :2]) == pytest.approx(1.0, rel=1e-12)
     if ratio == 1.0:  # a disc that turns on the spot: 3 pi/16
         assert exact[1] == pytest.approx([0, 0, -3 * np.pi / 16], abs=1e-4)
-    assert Extrapolated(ratio).forces(far) == pytest.approx(exact, abs=0.02)
+    assert Extrapolated(ratio, 500).forces(far) == pytest.approx(exact, abs=0.02)
 
 
 def test_a_case_that_is_not_solved_is_named():

@@ -135,18 +135,18 @@ RS_INLINE void interpolate(const rs_creep_table *table, int slopes, const rs_lan
 }
 
 /* Slopes with respect to u from those with respect to s, of component i; sign: of that component. */
-RS_INLINE void chain(const point *p, const rs_lane *d, rs_lane sign, rs_lane *to)
+RS_INLINE void chain(const point *p, const rs_lane *d, const rs_lane *sign, rs_lane *to)
 {
-	rs_lane radial = d[0] * p->s[0] + d[1] * p->s[1] + d[2] * p->s[2], turned = sign * p->shrink;
+	rs_lane radial = d[0] * p->s[0] + d[1] * p->s[1] + d[2] * p->s[2], turned = *sign * p->shrink;
 	to[0] = turned * p->side * (d[0] - radial * p->along[0]);
 	to[1] = turned * p->turn * (d[1] - radial * p->along[1]);
 	to[2] = turned * p->turn * p->per * (d[2] - radial * p->along[2]);
 }
 
 /* h0, h1 from q; d: dq/ds on entry of x and y, dh/ds on return. */
-RS_INLINE void saturate(int slopes, rs_lane x, rs_lane y, rs_lane *h, rs_lane (*d)[3])
+RS_INLINE void saturate(int slopes, const rs_lane *q, rs_lane *h, rs_lane (*d)[3])
 {
-	rs_lane square = x * x + y * y + TINY, size, R, slope_over_size;
+	rs_lane x = q[0], y = q[1], square = x * x + y * y + TINY, size, R, slope_over_size;
 	RS_SQRT(size, square);
 	RS_EACH(l) {
 		double z = RS_OF(size, l), inverse = 1.0 / z;
@@ -171,7 +171,7 @@ RS_INLINE void evaluate(const rs_creep_input *in, int slopes, rs_creep_value *ou
 	rs_lane per = 1.0 / p.per, ratio = in->root * in->root, size = 0.5 * (ratio + 1.0 / ratio), arm;
 	RS_SQRT(arm, size);
 	rs_lane of_lateral = in->c23 / in->c22, of_spin = -in->c33 / in->c23 * per, left = 1.0 - p.rho;
-	rs_lane x = -RADIUS / 3 * p.s[0] + p.square * p.T[0], y = -RADIUS / 3 * (p.s[1] + per * p.s[2]) + p.square * p.T[1];
+	rs_lane q[2] = {-RADIUS / 3 * p.s[0] + p.square * p.T[0], -RADIUS / 3 * (p.s[1] + per * p.s[2]) + p.square * p.T[1]};
 	rs_lane linear = RADIUS * (of_lateral * p.s[1] + of_spin * p.s[2]);
 	for (int j = 0; slopes && j < 3; j++) {
 		for (int i = 0; i < 3; i++)
@@ -185,15 +185,15 @@ RS_INLINE void evaluate(const rs_creep_input *in, int slopes, rs_creep_value *ou
 		d[2][1] += RADIUS * left * of_lateral;
 		d[2][2] += RADIUS * left * of_spin;
 	}
-	saturate(slopes, x, y, h, d);
+	saturate(slopes, q, h, d);
 	out->h[0] = p.side * h[0];
 	out->h[1] = p.turn * h[1];
 	out->h[2] = p.turn * (left * linear + p.square * arm * p.T[2]);
 	if (!slopes)
 		return;
-	chain(&p, d[0], p.side, out->d[0]);
-	chain(&p, d[1], p.turn, out->d[1]);
-	chain(&p, d[2], p.turn, out->d[2]);
+	chain(&p, d[0], &p.side, out->d[0]);
+	chain(&p, d[1], &p.turn, out->d[1]);
+	chain(&p, d[2], &p.turn, out->d[2]);
 }
 
 RS_CLONES void rs_creep_exact_table(const rs_creep_input *in, int slopes, rs_creep_value *out)

@@ -18,6 +18,8 @@ from derive.exact_contact.coordinates import RADIUS, constants
 
 _SATURATED = 1.0 - 1e-4  # |F|/(mu N) from which a solution counts as full slip
 _LEAST_WEIGHT = 0.05     # of the length of q
+_BEYOND = 1.08           # least length asked for in full slip, with the weight _SLIP_WEIGHT: so that 1 is reached between the points
+_SLIP_WEIGHT = 0.3
 _ROUNDS = 6
 
 
@@ -69,8 +71,8 @@ def _fitted_forces(designs, q0, forces, rough):
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
     slips = size > _SATURATED
     wanted = 1 - np.cbrt(1 - np.minimum(size, _SATURATED))
-    wanted = np.where(slips, 1.1, wanted)
-    w_along = np.maximum(3 * (1 - np.minimum(wanted, 1.0)) ** 2, _LEAST_WEIGHT)
+    wanted = np.where(slips, _BEYOND, wanted)
+    w_along = np.where(slips, _SLIP_WEIGHT, np.maximum(3 * (1 - np.minimum(wanted, 1.0)) ** 2, _LEAST_WEIGHT))
     w_across = np.where(wanted < 1, 3 - 3 * wanted + wanted**2, 1.0)
     rows = [hstack([d.multiply((w * n[:, k])[:, None]) for k, d in enumerate(designs)])
             for n, w in ((along, w_along), (across, w_across))]
@@ -81,7 +83,7 @@ def _fitted_forces(designs, q0, forces, rough):
         right = np.concatenate([w_along * np.sum(along * target, 1), w_across * np.sum(across * target, 1)])
         free = solve(matrix.T @ right)
         q = q0 + np.stack([designs[0] @ free[:count], designs[1] @ free[count:]], axis=1)
-        wanted = np.where(slips, np.maximum(1.02, np.sum(q * along, axis=1)), wanted)
+        wanted = np.where(slips, np.maximum(_BEYOND, np.sum(q * along, axis=1)), wanted)
     return np.stack([free[:count], free[count:]], axis=1)
 
 
