@@ -2,16 +2,17 @@
 /* Exact half-space theory of steady rolling from a table (derive/exact_contact), interpolated with slopes.
  *
  *   v = (u1, u2, k u3/C23)    k = 0.6 sqrt((C22^2 a/b + C11^2 b/a)/2)    s = v/(r0 + |v|), r0 = 3/2: |s| = 1 is full slip
+ *   z = v (e + |v|)/(|v|^2 + (e + 1) |v| + f), e = 0.4, f = 3/2: the spline's coordinates, finer where slip spreads
  *   q = -(r0/3) (s1, s2 + s3 C23/k) + |s|^2 (Tx, Ty)    (h0, h1) = q (3 - 3 |q| + |q|^2) for |q| < 1, else q/|q|
  *   h2 = r0 (1 - |s|) (s2 C23/C22 - s3 C33/k) + |s|^2 sqrt((a/b + b/a)/2) Tm
  *
  * So slopes at zero are Kalker's and |(h0, h1)| <= 1, whatever the table holds; with T = 0 and |v| << r0 the force is that
- * of Shen, Hedrick and Elkins. T is a quadratic spline in s and in log(a/b), continuous with its slopes, and mirrored:
+ * of Shen, Hedrick and Elkins. T is a quadratic spline in z and in log(a/b), continuous with its slopes, and mirrored:
  * (-s1): Tx changes sign; (-s2, -s3): Ty and Tm do. Slopes of h are those of this interpolation. Outside the table's
  * a/b T is that of its end; Kalker's coefficients, k and the arm go on.
  *
- * Table: [s1][s2][a/b][s3][3] = Tx, Ty, Tm, and one number more at the end: three are read as four. The coefficient
- * before each plane s1 = 0, s3 = 0 is stored too.
+ * Table: [z1][z2][a/b][z3][3] = Tx, Ty, Tm, and one number more at the end: three are read as four. The coefficient
+ * before each plane z1 = 0, z3 = 0 is stored too.
  */
 #include <stddef.h>
 
@@ -19,6 +20,8 @@
 
 #define RADIUS 1.5
 #define SPIN_SHARE 0.6
+#define LINEAR 0.4
+#define MIDDLE 1.5
 #define TINY 1e-290 /* added to squares that divide */
 
 #if defined(__GNUC__)
@@ -33,13 +36,13 @@ typedef double part, stored;
 typedef struct {
 	rs_lane side, turn;              /* signs of u1 and u3 */
 	rs_lane per;                     /* dv3/du3 */
-	rs_lane s[3], along[3];          /* s; v/|v| */
-	rs_lane shrink, rho, square;     /* 1/(r0 + |v|), |s|, |s|^2 */
-	rs_lane place[4];                /* in pieces of the spline: s1 s2 s3 log(a/b) */
-	rs_lane T[3], d[3][3];           /* values, and slopes with respect to s */
+	rs_lane v[3], along[3];          /* v; v/|v| */
+	rs_lane shrink, square, growth;  /* 1/(r0 + |v|), |s|^2 and its slope with respect to |v| */
+	rs_lane z[3], narrow, turned;    /* z; z/v; |v| times the slope of z/v with respect to |v| */
+	rs_lane T[3], d[3][3];           /* values, and slopes with respect to v */
 } point;
 
-/* v and s, of creepages turned to u1 >= 0, u3 >= 0. */
+/* v, s and z, of creepages turned to u1 >= 0, u3 >= 0. */
 RS_INLINE void locate(const rs_creep_input *in, point *p)
 {
 	rs_lane ratio = in->root * in->root, k, size, square;
@@ -50,19 +53,24 @@ RS_INLINE void locate(const rs_creep_input *in, point *p)
 		RS_AT(p->side, l) = copysign(1.0, RS_OF(in->u[0], l));
 		RS_AT(p->turn, l) = copysign(1.0, RS_OF(in->u[2], l));
 	}
-	rs_lane v[3] = {p->side * in->u[0], p->turn * in->u[1], p->turn * p->per * in->u[2]};
-	square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + TINY;
+	p->v[0] = p->side * in->u[0];
+	p->v[1] = p->turn * in->u[1];
+	p->v[2] = p->turn * p->per * in->u[2];
+	square = p->v[0] * p->v[0] + p->v[1] * p->v[1] + p->v[2] * p->v[2] + TINY;
 	RS_SQRT(size, square);
 	p->shrink = 1.0 / (RADIUS + size);
-	p->rho = size * p->shrink;
-	p->square = p->rho * p->rho;
+	rs_lane rho = size * p->shrink, below = 1.0 / (square + (LINEAR + 1.0) * size + MIDDLE), inverse = 1.0 / size;
+	p->square = rho * rho;
+	p->growth = 2.0 * RADIUS * rho * p->shrink * p->shrink;
+	p->narrow = (LINEAR + size) * below;
+	p->turned = size * below * (1.0 - p->narrow * (2.0 * size + LINEAR + 1.0));
 	for (int j = 0; j < 3; j++) {
-		p->along[j] = v[j] / size;
-		p->s[j] = v[j] * p->shrink;
+		p->along[j] = p->v[j] * inverse;
+		p->z[j] = p->v[j] * p->narrow;
 	}
 }
 
-/* Weights of three coefficients, and their slopes with respect to s where pieces is the number of them a unit. */
+/* Weights of three coefficients, and their slopes with respect to z where pieces is the number of them a unit. */
 RS_INLINE int weights(double at, int last, double pieces, double *w, double *d)
 {
 	int first = (int)at;
@@ -124,7 +132,7 @@ RS_INLINE void interpolate(const rs_creep_table *table, int slopes, const rs_lan
 		double found[4][4], at = stretch * (2.0 * log(RS_OF(*root, l)) - start);
 		at = at > 0.0 ? at : 0.0;
 		at = at < table->ratio_pieces ? at : table->ratio_pieces;
-		double place[4] = {n * RS_OF(p->s[0], l), n * (1.0 + RS_OF(p->s[1], l)), n * RS_OF(p->s[2], l), at};
+		double place[4] = {n * RS_OF(p->z[0], l), n * (1.0 + RS_OF(p->z[1], l)), n * RS_OF(p->z[2], l), at};
 		look_up(table, slopes, place, found);
 		for (int i = 0; i < 3; i++) {
 			RS_AT(p->T[i], l) = found[0][i];
@@ -132,18 +140,22 @@ RS_INLINE void interpolate(const rs_creep_table *table, int slopes, const rs_lan
 				RS_AT(p->d[i][j], l) = found[1 + j][i];
 		}
 	}
+	for (int i = 0; slopes && i < 3; i++) {
+		rs_lane radial = p->turned * (p->d[i][0] * p->along[0] + p->d[i][1] * p->along[1] + p->d[i][2] * p->along[2]);
+		for (int j = 0; j < 3; j++)
+			p->d[i][j] = p->narrow * p->d[i][j] + radial * p->along[j];
+	}
 }
 
-/* Slopes with respect to u from those with respect to s, of component i; sign: of that component. */
+/* Slopes with respect to u from those with respect to v, of a component with its sign. */
 RS_INLINE void chain(const point *p, const rs_lane *d, const rs_lane *sign, rs_lane *to)
 {
-	rs_lane radial = d[0] * p->s[0] + d[1] * p->s[1] + d[2] * p->s[2], turned = *sign * p->shrink;
-	to[0] = turned * p->side * (d[0] - radial * p->along[0]);
-	to[1] = turned * p->turn * (d[1] - radial * p->along[1]);
-	to[2] = turned * p->turn * p->per * (d[2] - radial * p->along[2]);
+	to[0] = *sign * p->side * d[0];
+	to[1] = *sign * p->turn * d[1];
+	to[2] = *sign * p->turn * p->per * d[2];
 }
 
-/* h0, h1 from q; d: dq/ds on entry of x and y, dh/ds on return. */
+/* h0, h1 from q; d: dq/dv on entry, dh/dv on return. */
 RS_INLINE void saturate(int slopes, const rs_lane *q, rs_lane *h, rs_lane (*d)[3])
 {
 	rs_lane x = q[0], y = q[1], square = x * x + y * y + TINY, size, R, slope_over_size;
@@ -170,25 +182,29 @@ RS_INLINE void evaluate(const rs_creep_input *in, int slopes, rs_creep_value *ou
 	interpolate(in->table, slopes, &in->root, &p);
 	rs_lane per = 1.0 / p.per, ratio = in->root * in->root, size = 0.5 * (ratio + 1.0 / ratio), arm;
 	RS_SQRT(arm, size);
-	rs_lane of_lateral = in->c23 / in->c22, of_spin = -in->c33 / in->c23 * per, left = 1.0 - p.rho;
-	rs_lane q[2] = {-RADIUS / 3 * p.s[0] + p.square * p.T[0], -RADIUS / 3 * (p.s[1] + per * p.s[2]) + p.square * p.T[1]};
-	rs_lane linear = RADIUS * (of_lateral * p.s[1] + of_spin * p.s[2]);
+	rs_lane of_lateral = in->c23 / in->c22, of_spin = -in->c33 / in->c23 * per;
+	rs_lane share = -RADIUS / 3 * p.shrink, fade = RADIUS * RADIUS * p.shrink * p.shrink;
+	rs_lane lateral = p.v[1] + per * p.v[2], moment = fade * (of_lateral * p.v[1] + of_spin * p.v[2]);
+	rs_lane q[2] = {share * p.v[0] + p.square * p.T[0], share * lateral + p.square * p.T[1]};
 	for (int j = 0; slopes && j < 3; j++) {
+		rs_lane back = p.shrink * p.along[j];
 		for (int i = 0; i < 3; i++)
-			d[i][j] = 2.0 * p.s[j] * p.T[i] + p.square * p.d[i][j];
-		d[2][j] = arm * d[2][j] - linear * p.along[j];
+			d[i][j] = p.growth * p.along[j] * p.T[i] + p.square * p.d[i][j];
+		d[0][j] -= share * p.v[0] * back;
+		d[1][j] -= share * lateral * back;
+		d[2][j] = arm * d[2][j] - 2.0 * moment * back;
 	}
 	if (slopes) {
-		d[0][0] -= RADIUS / 3;
-		d[1][1] -= RADIUS / 3;
-		d[1][2] -= RADIUS / 3 * per;
-		d[2][1] += RADIUS * left * of_lateral;
-		d[2][2] += RADIUS * left * of_spin;
+		d[0][0] += share;
+		d[1][1] += share;
+		d[1][2] += share * per;
+		d[2][1] += fade * of_lateral;
+		d[2][2] += fade * of_spin;
 	}
 	saturate(slopes, q, h, d);
 	out->h[0] = p.side * h[0];
 	out->h[1] = p.turn * h[1];
-	out->h[2] = p.turn * (left * linear + p.square * arm * p.T[2]);
+	out->h[2] = p.turn * (moment + p.square * arm * p.T[2]);
 	if (!slopes)
 		return;
 	chain(&p, d[0], &p.side, out->d[0]);

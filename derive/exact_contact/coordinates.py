@@ -3,7 +3,10 @@
 
     v = (u1, u2, k u3/C23)    k = 0.6 sqrt((C22^2 a/b + C11^2 b/a)/2)    s = v/(r0 + |v|)
 
-All creepages fit into the unit ball; its surface is full slip. u is Kalker's linear force over mu N (csrc/creep.h).
+All creepages fit into the unit ball; its surface is full slip. u is Kalker's linear force over mu N (csrc/creep.h). The
+spline's own coordinates have the same direction, and are finer where forces turn from adhesion to slip:
+
+    z = v (e + |v|)/(|v|^2 + (e + 1) |v| + f), e = 0.4, f = 1.5
 """
 
 from __future__ import annotations
@@ -14,6 +17,7 @@ from railsym.kalker import kalker_coefficients
 
 RADIUS = 1.5       # r0
 SPIN_SHARE = 0.6
+LINEAR, MIDDLE = 0.4, 1.5  # e, f
 
 
 def constants(ratio, poisson=0.28):
@@ -36,3 +40,10 @@ def to_ball(v):
 def from_ball(s):
     """v (n, 3) of s (n, 3), |s| < 1."""
     return RADIUS * s / (1 - np.linalg.norm(s, axis=-1, keepdims=True))
+
+
+def stretched(s):
+    """z (n, 3) of s (n, 3), |s| <= 1."""
+    rho = np.linalg.norm(s, axis=-1, keepdims=True)
+    size, left = RADIUS * rho, 1 - rho  # |v| = size/left
+    return s * RADIUS * (LINEAR * left + size) / (size**2 + (LINEAR + 1) * size * left + MIDDLE * left**2)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Coefficients of the table from solutions.
 
-The table holds T(s) of (csrc/creep/exact_table.c)
+The table holds T(z(s)) of (csrc/creep/exact_table.c)
 
     q = -(r0/3) (s1, s2 + s3 C23/k) + |s|^2 (Tx, Ty)    (h0, h1) = q (3 - 3 |q| + |q|^2) for |q| < 1, else q/|q|
     h2 = r0 (1 - |s|) (s2 C23/C22 - s3 C33/k) + |s|^2 size Tm
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from derive.exact_contact.coordinates import RADIUS, constants
+from derive.exact_contact.coordinates import RADIUS, constants, stretched
 
 _SATURATED = 1.0 - 1e-4  # |F|/(mu N) from which a solution counts as full slip
 _LEAST_WEIGHT = 0.05     # of the length of q
@@ -44,7 +44,7 @@ def moment_size(ratio):
 
 def evaluate(ball, full, s, ratio, poisson):
     """h (n, 3) of the table at points s of the half ball."""
-    T = ball.values(full, s)
+    T = ball.values(full, stretched(s))
     q, moment = basis(s, ratio, poisson)
     square = np.sum(s * s, axis=1)
     force = saturated(q + square[:, None] * T[:, :2])
@@ -54,11 +54,11 @@ def evaluate(ball, full, s, ratio, poisson):
 def fitted(ball, s, forces, ratio, poisson, smoothing=1e-2):
     """All coefficients (*ball.shape, 3) at one a/b from forces (n, 3) at s (n, 3)."""
     q0, moment = basis(s, ratio, poisson)
-    square = np.sum(s * s, axis=1)
+    square, at = np.sum(s * s, axis=1), stretched(s)
     rough = smoothing * ball.roughness()
     free = np.empty((ball.size, 3))
-    free[:, 2] = _least_squares(ball.design(s, 2).multiply(square[:, None]), (forces[:, 2] - moment) / moment_size(ratio), rough)
-    free[:, :2] = _fitted_forces([ball.design(s, k).multiply(square[:, None]) for k in (0, 1)], q0, forces[:, :2], rough)
+    free[:, 2] = _least_squares(ball.design(at, 2).multiply(square[:, None]), (forces[:, 2] - moment) / moment_size(ratio), rough)
+    free[:, :2] = _fitted_forces([ball.design(at, k).multiply(square[:, None]) for k in (0, 1)], q0, forces[:, :2], rough)
     n = ball.pieces + 1
     return ball.expand(free.reshape(n, ball.shape[1], n, 3))
 
