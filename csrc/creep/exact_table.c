@@ -115,12 +115,12 @@ RS_INLINE void look_up(const rs_creep_table *table, int slopes, const double *pl
 			d2 += w[0][x] * over_2;
 			d3 += w[0][x] * over_3;
 		}
-		*(part *)(to[0] + c) = all;
+		*(stored *)(to[0] + c) = all;
 		if (!slopes)
 			continue;
-		*(part *)(to[1] + c) = d1;
-		*(part *)(to[2] + c) = d2;
-		*(part *)(to[3] + c) = d3;
+		*(stored *)(to[1] + c) = d1;
+		*(stored *)(to[2] + c) = d2;
+		*(stored *)(to[3] + c) = d3;
 	}
 }
 
