@@ -12,13 +12,17 @@ from importlib import import_module
 from types import ModuleType
 
 _MODULE_OF = {
+    "ChannelWriter": "results",
     "ContactPair": "contact_pair",
+    "ContactTable": "contact_table",
     "LinearContact": "contact",
     "LinearModel": "linear_model",
     "Material": "creep",
     "Profile": "profiles",
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
+    "Run": "results",
+    "Track": "track",
     "Vehicle": "vehicle",
     "creep_forces": "creep",
     "creep_laws": "creep",
@@ -26,7 +30,9 @@ _MODULE_OF = {
     "equivalent_conicity": "conicity",
     "linear_model": "linear",
     "linearise": "linear",
+    "load_contact_table": "contact_table",
     "load_profile": "profiles",
+    "load_track": "track",
     "load_vehicle": "vehicle",
     "parameter_map": "stability_map",
     "profiles": "profiles",
@@ -35,7 +41,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("dampers", "plots")
+_SUBMODULES = ("criteria", "dampers", "plots", "results", "track")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 

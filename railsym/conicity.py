@@ -20,7 +20,7 @@ every 0.1 mm, as in the edition of 2008, 0.058). In (2), y = (a + b)/2 + A sin t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -52,6 +52,8 @@ class Conicity:
         What it was computed from, m.
     with_roll : bool
     message : str
+    load : float or None
+        Vertical load of each wheel in elastic contact, N; None for rigid contact.
     """
 
     amplitude: np.ndarray
@@ -62,9 +64,10 @@ class Conicity:
     rolling_radius_difference: np.ndarray = field(repr=False)
     with_roll: bool = False
     message: str = ""
+    load: float | None = None
 
 
-def equivalent_conicity(pair, amplitude=3e-3, *, with_roll=False):
+def equivalent_conicity(pair, amplitude=3e-3, *, with_roll=False, load=None):
     """Equivalent conicity of wheel and rail profiles.
 
     Parameters
@@ -74,6 +77,9 @@ def equivalent_conicity(pair, amplitude=3e-3, *, with_roll=False):
         m.
     with_roll : bool
         The wheelset rolls as both wheels touch; EN 15302 leaves it out.
+    load : float, optional
+        Vertical load of each wheel, N: elastic contact (`ContactPair.table`), rolling radii weighted by the loads of the patches.
+        Without it contact is rigid, as in EN 15302.
 
     Returns
     -------
@@ -85,34 +91,42 @@ def equivalent_conicity(pair, amplitude=3e-3, *, with_roll=False):
         For an amplitude that is not positive, or beyond which a wheel is off its rail.
     """
     amplitude = _amplitudes(amplitude)
-    y, difference = _difference(pair, amplitude.max(), with_roll)
-    return conicity_of_difference(y, difference, amplitude, pair.tape_circle_spacing, pair.mean_radius, with_roll=with_roll)
+    y, difference = _difference(pair, amplitude.max(), _sampler(pair, with_roll, load))
+    found = conicity_of_difference(y, difference, amplitude, pair.tape_circle_spacing, pair.mean_radius, with_roll=with_roll)
+    return found if load is None else replace(found, load=float(load))
 
 
-def _difference(pair, amplitude, with_roll):
+def _difference(pair, amplitude, sampled):
     """Shifts and rolling radius difference, as far as motions of the amplitude may need it."""
     if pair.symmetric:            # half of it: the difference is odd
         half = np.linspace(0.0, amplitude, int(np.ceil(amplitude / _STEP)) + 1)
-        value = _sampled(pair, half, with_roll)
+        value = sampled(half)
         value[0] = 0.0
         return np.concatenate([-half[:0:-1], half]), np.concatenate([-value[:0:-1], value])
     for beyond in _BEYOND:
         reach = amplitude + beyond
         y = np.linspace(-reach, reach, 2 * int(np.ceil(reach / _STEP)) + 1)
         try:        # the ends are the worst
-            pair.contact(y[[0, -1]], with_roll)
+            sampled(y[[0, -1]])
         except ContactError:
             if not beyond:
                 raise
             continue
-        return y, _sampled(pair, y, with_roll)
+        return y, sampled(y)
     raise AssertionError("unreachable")
 
 
-def _sampled(pair, y, with_roll):
-    """In parts, for each shift looks at all of the rail."""
-    parts = np.array_split(y, max(1, len(y) // 256))
-    return np.concatenate([pair.contact(part, with_roll).rolling_radius_difference for part in parts])
+def _sampler(pair, with_roll, load):
+    """Rolling radius difference as a function of the shift."""
+    if load is not None:
+        table = pair.table()
+        return lambda y: table.contact(y, load, with_roll=with_roll).rolling_radius_difference
+
+    def rigid(y):       # in parts, for each shift looks at all of the rail
+        parts = np.array_split(y, max(1, len(y) // 256))
+        return np.concatenate([pair.contact(part, with_roll).rolling_radius_difference for part in parts])
+
+    return rigid
 
 
 def conicity_of_difference(y, difference, amplitude, spacing, radius, *, with_roll=False):
@@ -145,7 +159,7 @@ def conicity_of_difference(y, difference, amplitude, spacing, radius, *, with_ro
     conicity = (np.pi / wavelength) ** 2 * 2.0 * spacing * radius
     lost = np.isnan(wavelength)
     message = "" if not lost.any() else ("no periodic motion at the amplitude " + ", ".join(f"{1e3 * a:g}" for a in amplitude[lost]) + " mm: "
-                                         "the rolling radius difference does not drive the wheelset back")
+                                         f"from y = {1e3 * y[0]:.3g} to {1e3 * y[-1]:.3g} mm the rolling radius difference does not drive the wheelset back")
     return Conicity(amplitude, conicity, wavelength, centre, y, difference, with_roll, message)
 
 

@@ -11,10 +11,18 @@ closes by a height of its own; with roll zc and p are such that the least g of b
 dg/dp at fixed place on the rail only, because g is least there:
 
     dg/dzc = r' sin p - cos p                  dg/dp = -Y' - r' Z'                                      (2)
+
+A wheelset yawed by psi shows the rail the outline of its wheels. The point of the wheel at the place y whose normal has no part along
+the track lies at the angle t ahead, sin t = -r' tan psi, so that the outline is
+
+    Y = y cos psi + r sin t sin psi            Z = r cos t           dZ/dY = r'/(cos psi cos t)         (3)
+
+with the contact r sin t ahead of the axle in the wheel's plane (exact without roll; with it to the first order in yaw times roll).
 """
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +36,7 @@ _BISECTIONS = 40             # of a bracket of 0.2 mm: below rounding
 _SEARCH_STEP = 1e-4          # m along the rail between the points searched
 _CLOSED = 1e-12              # m, gap left by Newton's method
 _MOST_STEPS = 60
+_MOST_YAW, _MOST_ROLL = 0.1, 0.1     # rad
 
 
 class Surface:
@@ -43,6 +52,10 @@ class Surface:
         self._slope = self._z.derivative()
         self._curvature = profile.curvature[keep]
 
+    def yawed(self, yaw):
+        """Outline of this wheel when it is yawed, equation (3)."""
+        return Outline(self, yaw)
+
     def z(self, y):
         """Height (m, down); NaN outside the profile."""
         return self._z(y)
@@ -54,6 +67,39 @@ class Surface:
     def curvature(self, y):
         """Curvature, 1/m, convex positive."""
         return np.interp(y, self.y, self._curvature)
+
+
+class Outline(Surface):
+    """Outline of a yawed wheel; its places are those of the track, `place` gives those of the wheel."""
+
+    def __init__(self, wheel, yaw):
+        from scipy.interpolate import CubicHermiteSpline
+
+        radius, slope = wheel.z(wheel.y), wheel.slope(wheel.y)
+        sine = -slope * np.tan(yaw)
+        cosine = np.sqrt(np.maximum(1.0 - sine**2, 0.0))
+        y = wheel.y * np.cos(yaw) + radius * sine * np.sin(yaw)
+        rising = np.concatenate([[True], y[1:] > np.maximum.accumulate(y)[:-1]]) & (cosine > 0.1)
+        self.y, self._place, self._source, self._yaw = y[rising], wheel.y[rising], wheel, yaw
+        self._z = CubicHermiteSpline(self.y, (radius * cosine)[rising], (slope / (np.cos(yaw) * cosine))[rising], extrapolate=False)
+        self._slope = self._z.derivative()
+
+    def place(self, y):
+        """Place on the wheel (m) that is touched at a place of the outline."""
+        return np.interp(y, self.y, self._place)
+
+    def curvature(self, y):
+        """Of the wheel where it is touched, 1/m, convex positive."""
+        return self._source.curvature(self.place(y))
+
+    def ahead(self, y):
+        """How far the contact lies ahead of the axle (m), in the wheelset's axes."""
+        place = self.place(y)
+        return -self._source.z(place) * self._source.slope(place) * np.tan(self._yaw)
+
+    def radius(self, y):
+        """Radius of the wheel at the contact, m."""
+        return self._source.z(self.place(y))
 
 
 def _touchable(profile):
@@ -82,6 +128,8 @@ class SideContact:
         rad, of the contact plane to the track plane, positive as at a flange.
     wheel_curvature, rail_curvature : ndarray
         1/m, of the profiles, convex positive.
+    ahead : ndarray
+        How far the contact lies ahead of the axle, m; 0 without yaw.
     """
 
     wheel_y: np.ndarray
@@ -90,6 +138,7 @@ class SideContact:
     contact_angle: np.ndarray
     wheel_curvature: np.ndarray
     rail_curvature: np.ndarray
+    ahead: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +151,13 @@ class RigidContact:
         Lateral shift of the wheelset's centre, m, positive to the right.
     left, right : SideContact
     roll : ndarray
-        rad, positive right side down; zero where roll was left out.
+        rad, positive right side down; zero where roll was left out, or the roll given.
     lift : ndarray
-        Height of the wheelset's centre above that at y = 0, m; without roll the mean of the two sides.
+        Height of the wheelset's centre above that at y = 0, m; where each wheel is lowered by itself the mean of the two sides.
     with_roll : bool
+        Both wheels touch.
+    yaw : float
+        rad, nose to the right positive.
     """
 
     y: np.ndarray
@@ -114,6 +166,7 @@ class RigidContact:
     roll: np.ndarray
     lift: np.ndarray
     with_roll: bool
+    yaw: float = 0.0
 
     @property
     def rolling_radius_difference(self):
@@ -136,6 +189,14 @@ class Side:
         count = int((arc[-1] - arc[0]) / _SEARCH_STEP) + 2
         self._grid_y = np.interp(np.linspace(arc[0], arc[-1], count), arc, self.rail.y)
         self._grid_z = self.rail.z(self._grid_y)
+
+    def yawed(self, yaw):
+        """This side with its wheel yawed (rad, positive about z down)."""
+        if not yaw:
+            return self
+        other = copy(self)
+        other.wheel = self.wheel.yawed(yaw)
+        return other
 
     def closest(self, shift, height, roll):
         """Place on the rail (its lateral coordinate, m) with the least gap, and that gap; arrays (n,).
@@ -196,8 +257,12 @@ class Side:
         across, _ = self._body(y, self.rail.z(y), shift, height, roll)
         # at an edge the rail has no tangent: the wheel's counts
         angle = -(np.arctan(self.wheel.slope(across)) + roll)
-        return SideContact(wheel_y=across - self.tape_circle, rail_y=y - self.rail_offset, rolling_radius=self.wheel.z(across), contact_angle=angle,
-                           wheel_curvature=self.wheel.curvature(across), rail_curvature=self.rail.curvature(y))
+        outline = isinstance(self.wheel, Outline)
+        place = self.wheel.place(across) if outline else across
+        return SideContact(wheel_y=place - self.tape_circle, rail_y=y - self.rail_offset,
+                           rolling_radius=self.wheel.radius(across) if outline else self.wheel.z(across), contact_angle=angle,
+                           wheel_curvature=self.wheel.curvature(across), rail_curvature=self.rail.curvature(y),
+                           ahead=self.wheel.ahead(across) if outline else np.zeros(len(across)))
 
 
 def _sorted(y, z):
@@ -205,7 +270,7 @@ def _sorted(y, z):
     return y[order], z[order]
 
 
-def rigid_contact(left, right, y, with_roll=True):
+def rigid_contact(left, right, y, with_roll=True, *, roll=None, yaw=0.0):
     """Rigid contact of a wheelset.
 
     Parameters
@@ -215,6 +280,10 @@ def rigid_contact(left, right, y, with_roll=True):
         Lateral shift, m, positive to the right.
     with_roll : bool
         Both wheels touch; otherwise each wheel is lowered onto its rail by itself (EN 15302).
+    roll : array_like, shape (n,) or float, optional
+        Roll that the wheelset has, rad, positive right side down; each wheel is then lowered by itself.
+    yaw : float
+        rad, positive about z (down): the nose to the right.
 
     Returns
     -------
@@ -223,32 +292,51 @@ def rigid_contact(left, right, y, with_roll=True):
     Raises
     ------
     ContactError
-        Where a wheel is off its rail.
+        Where a wheel is off its rail, or a number makes no sense.
     ConvergenceError
         If the roll cannot be found.
     """
     y = np.atleast_1d(np.asarray(y, dtype=float))
     if y.ndim != 1 or not np.isfinite(y).all():
         raise ContactError(f"lateral shifts must be a list of finite numbers (m), got shape {y.shape}")
+    given = _given_roll(roll, len(y))
+    if not (np.isscalar(yaw) and abs(yaw) <= _MOST_YAW):
+        raise ContactError(f"yaw is {yaw!r} rad; it must be a number of at most {_MOST_YAW} rad")
+    left, right = left.yawed(-yaw), right.yawed(yaw)
     shifts = np.append(y, 0.0)                    # the last: lift is counted from the central position
-    zero = np.zeros(len(shifts))
-    heights = [_lowered(side, sign * shifts) for side, sign in ((left, -1.0), (right, 1.0))]
-    roll, height = zero, 0.5 * (heights[0] + heights[1])
-    if with_roll:
-        roll, height = _closed(left, right, shifts, height)
+    rolls = np.append(given, 0.0)
+    heights = [_lowered(side, sign * shifts, sign * rolls) for side, sign in ((left, -1.0), (right, 1.0))]
+    found, height = rolls, 0.5 * (heights[0] + heights[1])
+    if with_roll and roll is None:
+        found, height = _closed(left, right, shifts, height)
         heights = [height, height]
     sides = []
     for side, sign, own in zip((left, right), (-1.0, 1.0), heights):
-        place, _ = side.closest(sign * shifts, own, sign * roll)
-        sides.append(side.contact(*(v[:-1] for v in (place, sign * shifts, own, sign * roll))))
-    return RigidContact(y=y, left=sides[0], right=sides[1], roll=roll[:-1].copy(), lift=height[-1] - height[:-1], with_roll=with_roll)
+        place, _ = side.closest(sign * shifts, own, sign * found)
+        sides.append(side.contact(*(v[:-1] for v in (place, sign * shifts, own, sign * found))))
+    return RigidContact(y=y, left=sides[0], right=sides[1], roll=found[:-1].copy(), lift=height[-1] - height[:-1],
+                        with_roll=with_roll and roll is None, yaw=float(yaw))
 
 
-def _lowered(side, shift):
-    """Height (m, down) of the wheelset's centre with one wheel on its rail, without roll: there the gap falls by what it sinks."""
-    zero = np.zeros(len(shift))
-    start = np.full(len(shift), -side.radius)
-    return start + side.closest(shift, start, zero)[1]
+def _given_roll(roll, count):
+    try:
+        given = np.broadcast_to(0.0 if roll is None else np.asarray(roll, dtype=float), (count,))
+    except ValueError:
+        raise ContactError(f"roll has shape {np.shape(roll)}; it must be one number, or one for each of the {count} shifts") from None
+    if not (np.abs(given) <= _MOST_ROLL).all():
+        raise ContactError(f"roll must be at most {_MOST_ROLL} rad and finite, got {given[~(np.abs(given) <= _MOST_ROLL)][0]}")
+    return given
+
+
+def _lowered(side, shift, roll):
+    """Height (m, down) of the wheelset's centre with one wheel on its rail: without roll the gap falls by what it sinks."""
+    height = np.full(len(shift), -side.radius)
+    for _ in range(_MOST_STEPS if roll.any() else 1):
+        place, gap = side.closest(shift, height, roll)
+        height = height - gap / side.gap_derivatives(place, shift, height, roll)[0]
+        if np.abs(gap).max() < _CLOSED:
+            break
+    return height
 
 
 def _closed(left, right, shift, height):

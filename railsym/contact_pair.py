@@ -120,7 +120,7 @@ class ContactPair:
         (_, _, left), (_, _, right) = (self._laid(rail) for rail in (self.rail_left, self.rail))
         return left + inner_side(self._laid(self.rail_left)[0]) + right + inner_side(self._laid(self.rail)[0])
 
-    def contact(self, y, with_roll=True):
+    def contact(self, y, with_roll=True, *, roll=None, yaw=0.0):
         """Rigid contact at lateral shifts.
 
         Parameters
@@ -129,6 +129,10 @@ class ContactPair:
             Lateral shift of the wheelset, m, positive to the right.
         with_roll : bool
             Both wheels touch; otherwise each wheel is lowered onto its rail by itself, as in EN 15302.
+        roll : array_like, shape (n,) or float, optional
+            Roll that the wheelset has, rad, right side down positive; each wheel is then lowered by itself.
+        yaw : float
+            rad, nose to the right positive.
 
         Returns
         -------
@@ -137,15 +141,44 @@ class ContactPair:
         Raises
         ------
         ContactError
-            Where a wheel is off its rail.
+            Where a wheel is off its rail, or a number makes no sense.
         """
-        return rigid_contact(*self.sides, y, with_roll)
+        return rigid_contact(*self.sides, y, with_roll, roll=roll, yaw=yaw)
 
-    def equivalent_conicity(self, amplitude=3e-3, with_roll=False):
+    def table(self, *, young_modulus=2.1e11, poisson_ratio=0.28, deepest=3e-4, reach=15e-3):
+        """Table of the elastic contact of both wheels.
+
+        Parameters
+        ----------
+        young_modulus, poisson_ratio : float
+            Of wheel and rail, N/m^2 and -; steel.
+        deepest : float
+            Largest normal penetration that the table covers, m (0.3 mm: some 400 kN).
+        reach : float
+            Largest lateral shift, m, if the wheels are on the rails so far.
+
+        Returns
+        -------
+        railsym.contact_table.ContactTable
+            Kept: the same call returns the same table.
+
+        Raises
+        ------
+        ContactError
+            For numbers that make no sense, wheels that are not on their rails, or profiles too rough for elastic contact.
+        """
+        key = ("table", young_modulus, poisson_ratio, deepest, reach)
+        if key not in self._kept:
+            from railsym.contact_table_build import build
+
+            self._kept[key] = build(self, young_modulus, poisson_ratio, deepest, reach)
+        return self._kept[key]
+
+    def equivalent_conicity(self, amplitude=3e-3, with_roll=False, load=None):
         """Equivalent conicity after EN 15302:2021; see `railsym.conicity.equivalent_conicity`."""
         from railsym.conicity import equivalent_conicity
 
-        return equivalent_conicity(self, amplitude, with_roll=with_roll)
+        return equivalent_conicity(self, amplitude, with_roll=with_roll, load=load)
 
     def linear_contact(self, amplitude=3e-3, **more):
         """`LinearContact` with conicity, contact-angle and roll parameter, and radii of this pair at an amplitude.
