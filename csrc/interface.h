@@ -79,7 +79,8 @@ enum {
 	RS_CREEP_SHEN_HEDRICK_ELKINS = 1,
 	RS_CREEP_POLACH = 2,
 	RS_CREEP_FASTSIM = 3,
-	RS_CREEP_FASTRIP = 4
+	RS_CREEP_FASTRIP = 4,
+	RS_CREEP_EXACT = 5
 };
 enum { RS_CREEP_INPUTS = 15 };
 
@@ -176,3 +177,12 @@ rs_track *rs_track_create(int pieces, const double *joint, const rs_track_piece 
 int rs_track_add_rails(rs_track *track, double start, double step, int count, const double *coefficients,
                        const double *after);
 void rs_track_free(rs_track *track);
+
+typedef struct {
+	int pieces;                  /* of the spline, a unit of each axis of the half ball */
+	int ratio_pieces;            /* over log(a/b) */
+	double least, largest;       /* a/b */
+	const double *coefficients;  /* pieces + 2, 2 pieces + 2, ratio_pieces + 2, pieces + 2, 3, one more: creep/exact_table.c */
+} rs_creep_table;
+
+int rs_creep_forces_exact(const rs_creep_table *table, int contacts, const double *in, double *force, double *slopes);

@@ -76,7 +76,12 @@
  *                       constant a, b and coefficients; or NULL: skipped
  *   Status    RS_OK, RS_BAD_INDEX (law), RS_BAD_SIZE
  *   Notes     No load or no friction: no force, no slopes. a, b, modulus, weight and coefficients must be positive;
- *             that is not checked. No allocation, no state. One law a file in csrc/creep.
+ *             that is not checked. No allocation, no state. One law a file in csrc/creep. RS_CREEP_EXACT needs a table:
+ * rs_creep_forces_exact    the same with the law RS_CREEP_EXACT
+ *   Given     table     kept by the caller; coefficients finite
+ *             contacts, in   as rs_creep_forces
+ *   Returned  force, slopes  as rs_creep_forces
+ *   Status    RS_OK, RS_BAD_SIZE (contacts, or a table without pieces or with least >= largest)
  *
  * rs_track_...         the track's frames and rails: contracts in track.h
  *
