@@ -8,8 +8,10 @@
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__) && defined(__GNUC__) && __GNUC__ >= 12
 #define RS_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#define RS_LEVELS 1 /* the same levels can be named in a file, for code that differs between them */
 #else
 #define RS_CLONES
+#define RS_LEVELS 0
 #endif
 
 #endif

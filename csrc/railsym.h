@@ -80,6 +80,7 @@
  *
  * rs_wheel_rail_...    wheel-rail forces in motion: contract in wheel_rail.h
  * rs_contact_cones     contact in closed form, for rs_wheel_rail_...: csrc/wheel_rail/cones.c
+ * rs_track_...         the track's frames and rails: contracts in track.h
  */
 #ifndef RAILSYM_H
 #define RAILSYM_H

@@ -44,6 +44,8 @@ def main():
     amplitude, shift = np.linspace(1e-3, 7e-3, 121), np.arange(-140, 141) * 5e-5
     conicities = [pair.equivalent_conicity(amplitude, with_roll=roll) for roll in (False, True)]
     save(plots.plot_profile_pair(pair, pair.contact(shift), conicities, title="S1002 on UIC60, inclination 1:40, gauge 1435 mm"), "profile_pair.png")
+    track = rs.Track.s_curve(500, 200, transition=60, cant=0.1, kind="bloss").with_irregularity("erri_b176_low", seed=1)
+    save(track.plot(title="S-curve of radius 500 m, cant 100 mm, Bloss transitions; ERRI B176 low, seed 1")["plan"], "track.png")
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from importlib import import_module
 from types import ModuleType
 
 _MODULE_OF = {
+    "ChannelWriter": "results",
     "ConicalContact": "conical_contact",
     "ContactPair": "contact_pair",
     "ContactTable": "contact_table",
@@ -21,6 +22,8 @@ _MODULE_OF = {
     "Profile": "profiles",
     "Quantity": "vehicle_parts",
     "RailsymError": "errors",
+    "Run": "results",
+    "Track": "track",
     "Vehicle": "vehicle",
     "WheelRail": "wheel_rail",
     "creep_forces": "creep",
@@ -31,6 +34,7 @@ _MODULE_OF = {
     "linearise": "linear",
     "load_contact_table": "contact_table",
     "load_profile": "profiles",
+    "load_track": "track",
     "load_vehicle": "vehicle",
     "parameter_map": "stability_map",
     "profiles": "profiles",
@@ -39,7 +43,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("dampers", "plots")
+_SUBMODULES = ("criteria", "dampers", "plots", "results", "track")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 

@@ -1,26 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The contact table in C: built, kept as arrays, read (csrc/contact)."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from railsym._core import _check, _doubles, _vector, ffi, lib
 from railsym.errors import ContactError, CoreError
 
-ZONES, FIELDS = lib.RS_ZONES, 8
+ZONES, FIELDS, CLOSURE = lib.RS_ZONES, 8, 4
 SHAPE = ("shift_start", "shift_step", "shifts", "roll_start", "roll_step", "rolls", "levels", "zones", "deepest", "wheel_radius", "spacing")
 # one record a patch: seven quantities with their slopes over y, roll, drop, yaw; the zone
 PATCH = np.dtype([(name, np.float64, 5) for name in ("load", "x", "across", "radius", "angle", "a", "b")] + [("zone", np.intc)], align=True)
 assert PATCH.itemsize == ffi.sizeof("rs_patch")
 
 
-@dataclass(frozen=True)
-class Outside:
-    """Where a place of a wheel left the table: which of the places, and which of its quantities."""
-
-    number: int
-    quantity: str
+QUANTITIES = ("lateral shift", "roll", "penetration")       # what may be beyond the table, in the order of its numbers
 
 
 class Surfaces:
@@ -87,7 +80,7 @@ class Table:
         rolls, levels, zones = (int(shape[SHAPE.index(name)]) for name in ("rolls", "levels", "zones"))
         if not len(axes) == len(closures) == len(fields) == zones:
             raise ContactError(f"a contact table of {zones} zones needs as many axes, closures and fields; got {len(axes)}, {len(closures)}, {len(fields)}")
-        keep = [(_vector(c, int(axis[2]) * rolls * 2, "closure"), _vector(f, int(axis[2]) * rolls * levels * FIELDS, "field"))
+        keep = [(_vector(c, int(axis[2]) * rolls * CLOSURE, "closure"), _vector(f, int(axis[2]) * rolls * levels * FIELDS, "field"))
                 for axis, c, f in zip(axes, closures, fields)]
         pointers = [ffi.new("double *[]", [ffi.cast("double *", ffi.from_buffer(pair[k])) for pair in keep]) for k in range(2)]
         made = ffi.new("rs_contact_table **")
@@ -99,9 +92,9 @@ class Table:
         return self.shape[SHAPE.index(name)]
 
     def arrays(self, zone):
-        """closure (shifts, rolls, 2) and field (shifts, rolls, levels, 8) of a zone."""
+        """closure (shifts, rolls, 4) and field (shifts, rolls, levels, 8) of a zone."""
         shifts, rolls, levels = int(self.axes[zone, 2]), int(self.value("rolls")), int(self.value("levels"))
-        closure, field = np.empty((shifts, rolls, 2)), np.empty((shifts, rolls, levels, FIELDS))
+        closure, field = np.empty((shifts, rolls, CLOSURE)), np.empty((shifts, rolls, levels, FIELDS))
         lib.rs_contact_table_arrays(self.pointer, zone, _doubles(closure), _doubles(field))
         return closure, field
 
@@ -109,20 +102,26 @@ class Table:
     def nbytes(self):
         """Size in memory, bytes."""
         nodes = self.axes[:, 2].sum() * self.value("rolls")
-        return int(8 * nodes * (2 + self.value("levels") * FIELDS))
+        return int(8 * nodes * (CLOSURE + self.value("levels") * FIELDS))
 
     def lookup(self, place):
-        """Patches (n, zones) as records `PATCH`, their number (n,), and `Outside` or None; place (n, 4): y, roll, drop, yaw."""
+        """Patches (n, zones) as records `PATCH`, their number (n,), and what is beyond the table (n,): -1 nothing, else a place in `QUANTITIES`.
+
+        place (n, 4): y, roll, drop, yaw.
+
+        Raises
+        ------
+        ContactError, CoreError
+            For a shape that does not fit, or a place that is not finite.
+        """
         place = np.ascontiguousarray(place, dtype=float)
         if place.ndim != 2 or place.shape[1] != lib.RS_PLACE_SIZE:
             raise ContactError(f"places of a wheel must be (n, {lib.RS_PLACE_SIZE}): y, roll, drop, yaw; got {place.shape}")
         n = len(place)
-        patch, count = np.zeros((n, ZONES), dtype=PATCH), np.zeros(n, dtype=np.intc)
-        failed, beyond = ffi.new("int *"), ffi.new("int *")
-        status = lib.rs_contact_lookup_many(self.pointer, n, _doubles(place), ffi.from_buffer("rs_patch[]", patch), ffi.from_buffer("int[]", count),
-                                            failed, beyond)
-        if status == lib.RS_OUT_OF_TABLE:
-            return patch, count, Outside(failed[0], ("lateral shift", "roll", "penetration")[beyond[0]])
-        if status != lib.RS_OK:
-            raise CoreError(f"contact table: place {failed[0]} is not finite: y, roll, drop, yaw = {place[failed[0]].tolist()}")
-        return patch, count, None
+        patch, count, beyond = np.zeros((n, ZONES), dtype=PATCH), np.zeros(n, dtype=np.intc), np.zeros(n, dtype=np.intc)
+        lib.rs_contact_lookup_many(self.pointer, n, _doubles(place), ffi.from_buffer("rs_patch[]", patch), ffi.from_buffer("int[]", count),
+                                   ffi.from_buffer("int[]", beyond))
+        if (beyond == lib.RS_PLACE_SIZE).any():
+            k = int((beyond == lib.RS_PLACE_SIZE).argmax())
+            raise CoreError(f"contact table: place {k} is not finite: y, roll, drop, yaw = {place[k].tolist()}")
+        return patch, count, beyond

@@ -155,7 +155,7 @@ def conicity_of_difference(y, difference, amplitude, spacing, radius, *, with_ro
     conicity = (np.pi / wavelength) ** 2 * 2.0 * spacing * radius
     lost = np.isnan(wavelength)
     message = "" if not lost.any() else ("no periodic motion at the amplitude " + ", ".join(f"{1e3 * a:g}" for a in amplitude[lost]) + " mm: "
-                                         "the rolling radius difference does not drive the wheelset back")
+                                         f"from y = {1e3 * y[0]:.3g} to {1e3 * y[-1]:.3g} mm the rolling radius difference does not drive the wheelset back")
     return Conicity(amplitude, conicity, wavelength, centre, y, difference, with_roll, message)
 
 

@@ -15,12 +15,13 @@ from functools import cached_property
 import numpy as np
 
 from railsym import _core_contact as core
-from railsym.errors import ContactError
+from railsym.errors import ContactError, ConvergenceError
 
 SIDES = ("left", "right")
 _SIGN = {"left": -1.0, "right": 1.0}
 _MIRRORED = np.array([-1.0, -1.0, 1.0, -1.0])          # y, roll, drop, yaw of a left wheel as a right-hand side
 _QUANTITIES = core.PATCH.names[:-1]
+_FAR = 0.1                                            # m: a wheel is off its rail long before
 _UNITS = {"lateral shift": (1e3, "mm"), "roll": (1e3, "mrad"), "penetration": (1e3, "mm")}
 
 
@@ -150,26 +151,34 @@ class WheelTable:
         if places.ndim != 2:
             raise ContactError(f"places of a wheel must be lists of numbers, got shape {places.shape[:-1]}")
         own = places * _MIRRORED if self.side == "left" else places
-        records, count, outside = self.core.lookup(own)
-        if outside:
-            raise self._error(outside, own[outside.number], time)
+        records, count, beyond = self.core.lookup(own)
+        if (beyond >= 0).any():
+            k = int((beyond >= 0).argmax())
+            raise self._error(core.QUANTITIES[beyond[k]], own[k], time)
         return _patches(records, count, self.side)
 
-    def _error(self, outside, own, time):
+    def _error(self, quantity, own, time):
+        """Error of a place (y, roll, drop, yaw of a right-hand side)."""
         sign = _SIGN[self.side]
-        value = {"lateral shift": sign * (own[0] - self.core.value("wheel_radius") * own[1]), "roll": sign * own[1], "penetration": np.nan}[outside.quantity]
-        if outside.quantity == "penetration":
-            value = self._depth(own)
-        return OutOfTableError(f"{self.side} wheel", outside.quantity, float(value), self.limits[outside.quantity], time)
+        value = (sign * (own[0] - self.core.value("wheel_radius") * own[1]) if quantity == "lateral shift" else
+                 sign * own[1] if quantity == "roll" else self._depth(own))
+        return OutOfTableError(f"{self.side} wheel", quantity, float(value), self.limits[quantity], time)
 
     def _depth(self, own):
-        """Normal penetration of a place that is too deep: that at which the wheel is at the table's limit, and what it was lowered since."""
-        low, high = own[2] - 0.1, own[2]
+        """Penetration of a place that is too deep: the table's limit, and what the wheel was lowered since it was there."""
+        return float(self.core.value("deepest") + own[2] - self._boundary(own[None], lambda count, beyond: beyond == 2)[0])
+
+    def _boundary(self, own, is_below):
+        """Drop (n,) at which a wheel passes from not being `is_below`(count, beyond) to being it, within 0.1 m."""
+        low, high = np.full(len(own), -_FAR), np.full(len(own), _FAR)
         for _ in range(60):
             middle = 0.5 * (low + high)
-            place = np.array([[own[0], own[1], middle, own[3]]])
-            low, high = (low, middle) if self.core.lookup(place)[2] else (middle, high)
-        return float(self.core.value("deepest") + own[2] - low)
+            _, count, beyond = self.core.lookup(np.column_stack([own[:, :2], middle, own[:, 3]]))
+            for k in np.flatnonzero((beyond == 0) | (beyond == 1)):
+                raise self._error(core.QUANTITIES[beyond[k]], own[k], None)
+            below = is_below(count, beyond)
+            low, high = np.where(below, low, middle), np.where(below, middle, high)
+        return low
 
     def under_load(self, y, load, roll=0.0, yaw=0.0):
         """Drop at which the wheel bears a vertical load, and its patches there.
@@ -191,46 +200,28 @@ class WheelTable:
             Where the wheel is off the rail, or the load more than the table covers.
         """
         y, load, roll, yaw = (np.array(v, dtype=float) for v in np.broadcast_arrays(*(np.atleast_1d(v) for v in (y, load, roll, yaw))))
-        if not (np.isfinite(load) & (load > 0.0)).all():
-            raise ContactError(f"load must be positive and finite (N), got {load[~(np.isfinite(load) & (load > 0.0))][0]}")
-        drop = self._touching(y, roll, yaw)
-        step = 1e-5 * np.ones_like(drop)
-        for _ in range(60):             # from touching: Newton's method on load^(2/3), nearly straight over the drop
-            found = self.lookup(y, roll, drop + step, yaw)
+        good = np.isfinite(load) & (load > 0.0)
+        if not good.all():
+            raise ContactError(f"load must be positive and finite (N), got {load[~good][0]}")
+        own = np.column_stack([y, roll, np.zeros(len(y)), yaw]) * (_MIRRORED if self.side == "left" else 1.0)
+        touching = self._boundary(own, lambda count, beyond: (count > 0) | (beyond == 2))
+        room = self._boundary(own, lambda count, beyond: beyond == 2) - touching
+        step = np.minimum(1e-5, 0.5 * room)
+        for _ in range(100):            # from touching: Newton's method on load^(2/3), nearly straight over the drop
+            found = self.lookup(y, roll, touching + step, yaw)
             vertical = found.vertical_load
             slope = (found.slopes["load"][..., 2] * np.cos(found.angle) - found.load * np.sin(found.angle) * found.slopes["angle"][..., 2]).sum(axis=1)
-            scaled = (load / vertical) ** (2.0 / 3.0)
-            change = (scaled - 1.0) * 1.5 * vertical / slope
-            step = np.clip(step + change, 0.2 * step, 3.0 * step)
+            change = ((load / vertical) ** (2.0 / 3.0) - 1.0) * 1.5 * vertical / slope
             if np.abs(vertical / load - 1.0).max() < 1e-12 or np.abs(change).max() < 1e-15:
-                break
-        return drop + step, found
-
-    def _touching(self, y, roll, yaw):
-        """Drop at which the wheel touches, by bisection over what the table says."""
-        low, high = np.full(y.shape, -0.06), np.full(y.shape, 0.06)
-        for _ in range(50):
-            middle = 0.5 * (low + high)
-            down = self._touches(y, roll, middle, yaw)
-            low, high = np.where(down, low, middle), np.where(down, middle, high)
-        return low
-
-    def _touches(self, y, roll, drop, yaw):
-        """True where the wheel touches or is deeper than the table goes."""
-        places = np.column_stack([y, roll, drop, yaw]) * (_MIRRORED if self.side == "left" else 1.0)
-        touching = np.zeros(len(y), dtype=bool)
-        start = 0
-        while start < len(y):
-            _, count, outside = self.core.lookup(places[start:])
-            if not outside:
-                touching[start:] = count > 0
-                break
-            touching[start:start + outside.number] = count[:outside.number] > 0
-            if outside.quantity != "penetration":
-                raise self._error(outside, places[start + outside.number], None)
-            touching[start + outside.number] = True
-            start += outside.number + 1
-        return touching
+                return touching + step, found
+            step = np.clip(step + change, 0.2 * step, np.minimum(3.0 * step, room))
+        k = int(np.abs(vertical / load - 1.0).argmax())
+        if abs(step[k] - room[k]) < 1e-9:
+            raise ContactError(f"{self.side} wheel: at a lateral shift of {1e3 * y[k]:.4g} mm the contact table ends at a vertical load of {vertical[k] / 1e3:.4g} kN, "
+                               f"and {load[k] / 1e3:.4g} kN is asked; build it deeper: table(deepest=...)")
+        if abs(vertical[k] / load[k] - 1.0) < 1e-9:
+            return touching + step, found
+        raise ConvergenceError(f"{self.side} wheel: no drop found at a lateral shift of {1e3 * y[k]:.4g} mm: {vertical[k]:.6g} N of {load[k]:.6g} N")
 
 
 def _patches(records, count, side):
@@ -283,6 +274,8 @@ class ContactTable:
         m.
     description : str
         Of what it was made.
+    message : str
+        What could not be computed; empty where all could.
     """
 
     left: WheelTable
@@ -291,6 +284,7 @@ class ContactTable:
     wheel_radius: float
     wheel_radius_left: float
     description: str = ""
+    message: str = ""
 
     @property
     def nbytes(self):

@@ -85,7 +85,9 @@ def _core_table(eta, closure, columns, radius, half_spacing):
     slope_angle = angle + (columns["lateral_shift_m"][:, 0] - eta) / radius
     deepest = 3.0 * float((columns["penetration_m"] * np.cos(slope_angle)[:, None]).max())
     rolls = _ROLL_STEP * (np.arange(_ROLLS) - _ROLLS // 2)
-    c = np.stack([at(closure)[:, None] - at(distance)[:, None] * rolls, np.broadcast_to(at(np.cos(slope_angle))[:, None], (len(nodes), _ROLLS))], axis=-1)
+    radii = columns["rolling_radius_m"].mean(axis=1)
+    c = np.stack([at(closure)[:, None] - at(distance)[:, None] * rolls,
+                  *(np.broadcast_to(at(values)[:, None], (len(nodes), _ROLLS)) for values in (np.cos(slope_angle), radii, distance))], axis=-1)
     field = np.zeros((len(nodes), _ROLLS, _LEVELS + 3, core.FIELDS))
     for level in range(_LEVELS + 3):
         normal = deepest * max((level - 1) / _LEVELS, 0.0) ** 2

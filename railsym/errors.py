@@ -18,6 +18,10 @@ class ModelError(RailsymError, ValueError):
     """A vehicle whose equations cannot be assembled or linearised as asked."""
 
 
+class TrackError(RailsymError, ValueError):
+    """A track, an irregularity or a place on a track that cannot be used."""
+
+
 class ConvergenceError(RailsymError, RuntimeError):
     """An iteration that did not reach its tolerance."""
 

@@ -43,13 +43,19 @@ static void look(const rs_posture *p, int at, window *w)
 	}
 }
 
-/* Least gap and its place (rail point and fraction): the vertex of the parabola through three points. */
-static double least_gap(const window *w, int k, double *place)
+/* Place of the least gap (rail point and fraction): the vertex of the parabola through three points. */
+static double vertex(const window *w, int k)
 {
-	double least = w->gap[k], before = w->gap[k - 1] - least, after = w->gap[k + 1] - least, bend = before + after;
-	double t = bend > 0.0 ? 0.5 * (before - after) / bend : 0.0;
-	*place = w->first + k + t;
-	return least - 0.25 * (before - after) * t;
+	double before = w->gap[k - 1] - w->gap[k], after = w->gap[k + 1] - w->gap[k], bend = before + after;
+	return w->first + k + (bend > 0.0 ? 0.5 * (before - after) / bend : 0.0);
+}
+
+/* Gap at a place, with what there is to know of the wheel there. */
+static double touch(rs_posture *p, double place)
+{
+	double Y, Z;
+	rs_rail_at(p->from, place, &Y, &Z);
+	return rs_gap_at(p, Y, Z, &p->touch_across, &p->touch_slope);
 }
 
 /* At the end of a profile no contact can be computed. */
@@ -79,9 +85,9 @@ double rs_close_zone(rs_posture *p, rs_zone zone)
 		end = at_end(p, &w, here);
 		if (!end && (w.gap[here - 1] < w.gap[here] || w.gap[here + 1] < w.gap[here]))
 			return 0.0; /* the gap falls beyond the end of the zone: the neighbour's contact */
-		double place = at, Y, Z, least = end ? w.gap[here] : least_gap(&w, here, &place);
-		rs_rail_at(p->from, place, &Y, &Z);
-		rs_gap_at(p, Y, Z, &p->touch_across, &p->touch_slope);
+		double least = touch(p, end ? at : vertex(&w, here));
+		if (!(least <= w.gap[here]))
+			least = touch(p, at); /* an edge of the rail: no parabola */
 		if (fabs(least) < CLOSED)
 			break;
 		p->drop += least / (p->cosine - p->touch_slope * p->sine);

@@ -6,7 +6,8 @@
  *      between them.
  *   3. Where a zone has no contact of its own, c goes on as a straight line over the shift and the fields as they were, so
  *      that the cubics beside it stay sound.
- * At the end of a profile c is known and the stiffness is not a number: who touches there has left the rail.
+ * At the end of a profile, and where the patch cannot be computed, c is known and the stiffness is not a number: who touches there
+ * has left the table.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -24,7 +25,7 @@ enum { NOTHING, OWN, END }; /* what a zone has at a node: no contact of its own,
 
 typedef struct {
 	int kind;
-	double drop, cosine;
+	double drop, cosine, across;
 } closed;
 
 typedef struct {
@@ -63,7 +64,7 @@ static void close_each(builder *b, closed *out)
 	for (int z = 0; z < b->table->zones; z++) {
 		b->posture.drop = start;
 		double cosine = rs_close_zone(&b->posture, b->zone[z]);
-		out[z] = (closed){cosine > 0.0 ? OWN : cosine < 0.0 ? END : NOTHING, b->posture.drop, fabs(cosine)};
+		out[z] = (closed){cosine > 0.0 ? OWN : cosine < 0.0 ? END : NOTHING, b->posture.drop, fabs(cosine), b->posture.touch_across};
 		if (cosine != 0.0 && b->posture.drop < least)
 			least = b->posture.drop;
 	}
@@ -171,7 +172,7 @@ static int fill_levels(builder *b, int zone, rs_zone part, const closed *own, in
 	return RS_OK;
 }
 
-/* Second pass, one node. One that cannot be computed is taken as having no contact of its own, and counted. */
+/* Second pass, one node. One that cannot be computed is taken as the end of a profile, and counted. */
 static void fill_node(builder *b, int zone, int shift, int roll)
 {
 	rs_zone_table *own = &b->table->zone[zone];
@@ -181,6 +182,8 @@ static void fill_node(builder *b, int zone, int shift, int roll)
 	double *c = closure_node(b->table, zone, shift, roll);
 	c[0] = zones[zone].drop;
 	c[1] = zones[zone].cosine;
+	c[2] = rs_wheel_radius(b->posture.from, zones[zone].across);
+	c[3] = zones[zone].across;
 	*kind = (char)zones[zone].kind;
 	if (*kind != OWN)
 		return;
@@ -192,7 +195,7 @@ static void fill_node(builder *b, int zone, int shift, int roll)
 	rs_zone part = part_of(b, zones, zone);
 	b->posture.drop = b->posture.gap_drop;
 	if (fill_levels(b, zone, part, &zones[zone], shift, roll) != RS_OK) {
-		*kind = NOTHING;
+		*kind = END; /* who touches there is told that the table ends */
 		b->failures++;
 	}
 	b->posture.drop = lowest;
@@ -207,12 +210,13 @@ static void extend_node(builder *b, int zone, int shift, int roll, int towards)
 		double *c = closure_node(t, zone, shift, roll);
 		const double *near = closure_node(t, zone, shift + towards, roll), *far = closure_node(t, zone, shift + 2 * towards, roll);
 		c[0] = 2.0 * near[0] - far[0];
-		c[1] = near[1];
+		for (int k = 1; k < RS_CLOSURE; k++)
+			c[k] = near[k];
 	}
 	for (int level = 0; level < t->levels; level++) {
 		double *to = field_node(t, zone, shift, roll, level);
 		if (kind == END)
-			to[RS_STIFFNESS] = NAN;
+			to[RS_STIFFNESS] = NAN; /* and what touches beside it */
 		else
 			memcpy(to, field_node(t, zone, shift + towards, roll, level), RS_FIELDS * sizeof *to);
 	}

@@ -54,7 +54,7 @@ INLINE int locate(const rs_axis *axis, double x, cell *c)
 	return 1;
 }
 
-enum { VALUE, BY_SHIFT, BY_ROLL, TWICE_BY_SHIFT, BY_BOTH, CLOSURES }; /* of c and s */
+enum { VALUE, BY_SHIFT, BY_ROLL, TWICE_BY_SHIFT, BY_BOTH, CLOSURES }; /* of c, s, r, Y' */
 enum { BY_TAU = 3, FIELD_SLOPES };                                     /* of the fields, after the first three */
 
 INLINE void read_closure(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, double out[CLOSURES][RS_CLOSURE])
@@ -111,15 +111,16 @@ typedef struct {
 	double v, d[4];
 } slopes;
 
-/* Normal penetration p of a zone. */
-INLINE slopes penetration(const rs_contact_table *t, const double c[CLOSURES][RS_CLOSURE], double drop, double yaw)
+/* Normal penetration p of a zone: s P, P = drop - c + yaw^2/2 t (r t - Y'), t = -dc/d(eta). */
+INLINE slopes penetration(const double c[CLOSURES][RS_CLOSURE], double drop, double yaw)
 {
-	double along = -c[BY_SHIFT][0], half = 0.5 * yaw * yaw, arm = t->wheel_radius * along - t->spacing;
-	double lower = half * (2.0 * t->wheel_radius * along - t->spacing); /* d(lowering)/d(along) */
-	double P = drop - c[VALUE][0] + half * along * arm, s = c[VALUE][1];
-	slopes p = {s * P, {s * (-c[BY_SHIFT][0] - lower * c[TWICE_BY_SHIFT][0]) + P * c[BY_SHIFT][1],
-	                    s * (-c[BY_ROLL][0] - lower * c[BY_BOTH][0]) + P * c[BY_ROLL][1], s, s * yaw * along * arm}};
-	return p;
+	double t = -c[BY_SHIFT][0], r = c[VALUE][2], half = 0.5 * yaw * yaw, arm = r * t - c[VALUE][3], s = c[VALUE][1];
+	double P = drop - c[VALUE][0] + half * t * arm, by[2];
+	for (int k = 0; k < 2; k++) { /* shift, roll */
+		const double *d = c[BY_SHIFT + k], dt = -c[TWICE_BY_SHIFT + k][0];
+		by[k] = s * (-d[0] + half * (dt * (arm + r * t) + t * (t * d[2] - d[3]))) + P * d[1];
+	}
+	return (slopes){s * P, {by[0], by[1], s, s * yaw * t * arm}};
 }
 
 /* factor(p) F with its slopes, changed to (y, roll, drop, yaw): d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
@@ -209,7 +210,7 @@ RS_CLONES int rs_contact_lookup(const rs_contact_table *t, const double *place, 
 		if (!locate(&t->zone[z].shift, eta, &shift[z]))
 			continue; /* the zone cannot touch here */
 		read_closure(t, z, &shift[z], &roll, closure);
-		p[z] = penetration(t, closure, place[2], place[3]);
+		p[z] = penetration(closure, place[2], place[3]);
 		if (!(p[z].v <= t->deepest))
 			return refuse(2, beyond);
 	}
@@ -225,15 +226,15 @@ RS_CLONES int rs_contact_lookup(const rs_contact_table *t, const double *place, 
 	return RS_OK;
 }
 
-int rs_contact_lookup_many(const rs_contact_table *t, int n, const double *place, rs_patch *patch, int *count, int *failed, int *beyond)
+int rs_contact_lookup_many(const rs_contact_table *t, int n, const double *place, rs_patch *patch, int *count, int *beyond)
 {
+	int worst = RS_OK;
 	for (int k = 0; k < n; k++) {
-		int status = rs_contact_lookup(t, place + RS_PLACE_SIZE * (size_t)k, patch + RS_ZONES * (size_t)k, count + k, beyond);
-		if (status != RS_OK) {
-			*failed = k;
-			return status;
-		}
+		beyond[k] = -1;
+		int status = rs_contact_lookup(t, place + RS_PLACE_SIZE * (size_t)k, patch + RS_ZONES * (size_t)k, count + k, beyond + k);
+		if (status == RS_NOT_FINITE)
+			beyond[k] = RS_PLACE_SIZE;
+		worst = status != RS_OK ? status : worst;
 	}
-	*failed = n;
-	return RS_OK;
+	return worst;
 }

@@ -9,11 +9,11 @@
  * The wheel is cut into at most RS_ZONES zones (tread, flange), each with one patch of contact. With
  *
  *   eta = y - r0 roll                       shift of the wheel at the height of its contact
- *   P   = drop - c(eta, roll) + yaw^2/2 t (r0 t - spacing),  t = -dc/d(eta)       penetration, vertical
+ *   P   = drop - c(eta, roll) + yaw^2/2 t (r t - Y'),  t = -dc/d(eta)              penetration, vertical
  *   p   = s(eta, roll) P,  tau = sqrt(p/p_max)                                    normal penetration
  *
- * (c: drop at which a zone touches; s: cosine of the contact angle there; the term with yaw: the outline
- * of a yawed wheel, to the second order), a zone carries load K p^(3/2), and K, the place of the contact,
+ * (c: drop at which a zone touches; s, r, Y': cosine of the contact angle, radius and place on the wheel
+ * there; the term with yaw: the outline of a yawed wheel, to the second order), a zone carries load K p^(3/2), and K, the place of the contact,
  * its angle, and a/p^(1/2), b/p^(1/2) are tabled over (eta, roll, tau) from the elastic contact of
  * strips.c. Between the nodes they are cubics with the nodes' central differences as slopes
  * (Catmull-Rom): continuous with continuous slopes. Each zone has its own nodes of eta, over the range
@@ -24,7 +24,7 @@
 
 #include "../railsym.h"
 
-enum { RS_FIELDS = 8, RS_CLOSURE = 2 };
+enum { RS_FIELDS = 8, RS_CLOSURE = 4 };
 enum { RS_STIFFNESS, RS_ACROSS, RS_RADIUS, RS_ANGLE, RS_LENGTH, RS_WIDTH }; /* fields of a zone */
 
 typedef struct {
@@ -34,7 +34,7 @@ typedef struct {
 
 typedef struct {
 	rs_axis shift;
-	double *closure;        /* shift x roll x 2: c, s */
+	double *closure;        /* shift x roll x RS_CLOSURE: c, s, radius and place on the wheel of rigid contact */
 	double *field;          /* shift x roll x level x RS_FIELDS; a stiffness that is not a number: off the rail */
 } rs_zone_table;
 

@@ -24,7 +24,8 @@
 #define LEAST_LENGTH 0.1    /* of the width: H of shorter strips is that of this one (their load is negligible) */
 #define TOLERANCE 3e-4      /* on a_j, of the largest */
 #define SLACK 1e-4          /* of the largest u: overlap that adds a strip to the contact */
-enum { MOST_ROUNDS = 30, MOST_SETS = 12 };
+#define RELAXED 1e-6        /* on a_j^2, of the largest */
+enum { FULL_ROUNDS = 15, MOST_ROUNDS = 60, MOST_SETS = 12, MOST_SWEEPS = 2000 };
 
 typedef struct {
 	double m[RS_STRIPS][RS_STRIPS];
@@ -125,6 +126,26 @@ static int revise(const rs_strip_patch *p, workspace *w, double slack)
 	return changed;
 }
 
+/* Contact that goes round in circles, as at an edge of a profile: strip by strip, each pressed until it touches. */
+static int relax(const rs_strip_patch *p, workspace *w)
+{
+	for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
+		double change = 0.0, largest = 0.0;
+		for (int i = 0; i < RS_STRIPS; i++) {
+			double left = p->u[i];
+			for (int j = 0; j < RS_STRIPS; j++)
+				left -= w->m[i][j] * w->z[j];
+			double z = fmax(w->z[i] + left / w->m[i][i], 0.0);
+			change = fmax(change, fabs(z - w->z[i]));
+			largest = fmax(largest, z);
+			w->z[i] = z;
+		}
+		if (change < RELAXED * largest)
+			return RS_OK;
+	}
+	return RS_NOT_CONVERGED;
+}
+
 static int solve_contact(const rs_strip_patch *p, workspace *w)
 {
 	double largest = 0.0;
@@ -135,7 +156,12 @@ static int solve_contact(const rs_strip_patch *p, workspace *w)
 		if (!revise(p, w, SLACK * largest))
 			return RS_OK;
 	}
-	return RS_NOT_CONVERGED;
+	for (int i = 0; i < RS_STRIPS; i++)
+		w->z[i] = p->a[i] * p->a[i];
+	int status = relax(p, w);
+	for (int i = 0; i < RS_STRIPS; i++)
+		w->active[i] = w->z[i] > 0.0;
+	return status;
 }
 
 int rs_strip_contact(const rs_influence *table, rs_strip_patch *p)
@@ -153,7 +179,7 @@ int rs_strip_contact(const rs_influence *table, rs_strip_patch *p)
 			double a = w.z[i] > 0.0 ? sqrt(w.z[i]) : 0.0;
 			change = fmax(change, fabs(a - p->a[i]));
 			longest = fmax(longest, a);
-			p->a[i] = a;
+			p->a[i] = round < FULL_ROUNDS ? a : 0.5 * (p->a[i] + a);
 		}
 		if (!(longest > 0.0))
 			return RS_NOT_CONVERGED;

@@ -10,6 +10,8 @@
 
 #include "posture.h"
 
+#define EDGE 0.98 /* cosine of the turn of the rail from one sample to the next, 11 degrees: less is no curve but an edge */
+
 /* Radius of the wheel and its slope, cubic between samples; 0 where the wheel ends. */
 static int wheel_at(const rs_surfaces *f, double across, double *radius, double *slope)
 {
@@ -45,13 +47,17 @@ void rs_gaps(rs_posture *p)
 		p->gap[k] = rs_gap_at(p, p->from->rail_y[k], p->from->rail_z[k], &p->across[k], &p->slope[k]);
 }
 
-/* Point of the rail at a sample number with its fraction: cubic in arc length. */
+/* Point of the rail at a sample number with its fraction: cubic in arc length, straight where the rail has an edge. */
 void rs_rail_at(const rs_surfaces *f, double place, double *Y, double *Z)
 {
 	int k = (int)place;
 	k = k < 0 ? 0 : k > f->rail_count - 2 ? f->rail_count - 2 : k;
-	double t = place - k, h = f->rail_step, along = t * t * (3.0 - 2.0 * t);
-	double p = t * (1.0 - t) * (1.0 - t) * h, q = t * t * (t - 1.0) * h;
+	double t = place - k, h = f->rail_step, along = t, p = 0.0, q = 0.0;
+	if (f->rail_cosine[k] * f->rail_cosine[k + 1] + f->rail_sine[k] * f->rail_sine[k + 1] > EDGE) {
+		along = t * t * (3.0 - 2.0 * t);
+		p = t * (1.0 - t) * (1.0 - t) * h;
+		q = t * t * (t - 1.0) * h;
+	}
 	*Y = f->rail_y[k] + along * (f->rail_y[k + 1] - f->rail_y[k]) + p * f->rail_cosine[k] + q * f->rail_cosine[k + 1];
 	*Z = f->rail_z[k] + along * (f->rail_z[k + 1] - f->rail_z[k]) + p * f->rail_sine[k] + q * f->rail_sine[k + 1];
 }

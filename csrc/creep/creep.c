@@ -55,13 +55,14 @@ RS_INLINE void normalise(batch *b, int saturates, rs_creep_input *to)
 		RS_AT(safe, l) = touches ? 1.0 / limit : 1.0;
 	}
 	for (int j = 0; j < 3; j++)
-		to->u[j] = b->f[j] * in[XI + j] * safe;
-	RS_EACH(l) {
+		to->u[j] = b->f[j] * in[XI + j];
+	RS_EACH(l) { /* before the division, which might overflow */
 		double size = fabs(RS_OF(to->u[0], l)) + fabs(RS_OF(to->u[1], l)) + fabs(RS_OF(to->u[2], l));
-		RS_AT(b->scaled, l) = saturates && size > LARGEST_U ? LARGEST_U / size : 1.0;
+		double limit = RS_OF(b->limit, l), largest = limit > 0.0 ? LARGEST_U * limit : LARGEST_U;
+		RS_AT(b->scaled, l) = saturates && size > largest ? largest / size : 1.0;
 	}
 	for (int j = 0; j < 3; j++)
-		to->u[j] *= b->scaled;
+		to->u[j] *= b->scaled * safe;
 	to->c11 = in[C11];
 	to->c22 = in[C22];
 	to->c23 = in[C23];

@@ -15,8 +15,10 @@
  * weights of the cells in slip are integrated exactly, so h is continuous in u. Strips at Y = cos((j + 1/2) pi/n).
  *
  * Ours, where the law as implemented in CONTACT (E. Vollebregt) jumps:
- * - With |psi| > 1 strip theory may pass the bound at the leading edge, the more the larger R = (psi^2 - 1) L (1 + |1 - e/L|)/
- *   (the denominator of e): it has the weight w = z^2 (3 - 2 z), z = 2 (1 - R) within 0..1, and FASTSIM's tractions 1 - w.
+ * - With |psi| > 1 strip theory may pass the bound at the leading edge, the more the larger R = (psi^2 - 1) L (1 + |1 - e/L|)/d,
+ *   d the denominator of e; and with d < 0 it has no solution. Towards |psi| = 1 its solution goes to full slip if eta' psi >= 0,
+ *   to full adhesion without creepage. So it has the weight w = S(2 (1 - R)) S(2 r), S(z) = z^2 (3 - 2 z) within 0..1,
+ *   r = (max(d, 0) + max(1 - psi^2, 0)/2)/(|(xi', eta')| + 1/2), and FASTSIM's tractions 1 - w.
  * - Where a strip slips fully, slip is against the creepage (one flexibility), where it sticks against linear theory (three):
  *   C11, C22 and 32 C23/(3 pi sqrt(a/b)) count with w (1 - tau^4), their mean with the rest. tau is 1 from e = L on. The
  *   power was chosen on the exact solutions of docs/creep_forces.md.
@@ -117,15 +119,31 @@ RS_INLINE void integrals(int tangents, strip *s)
 #define LEAST_TAU 1e-30          /* slopes go with 1/sqrt(tau) times a creepage */
 #define LEAST_DENOMINATOR 1e-200 /* below it both creepages are zero, or |psi| > 1 and all slips */
 
+#define SMALL 0.5 /* creepages, of what makes the whole strip slip, that count as few beside the spin */
+
+/* S and its slope. */
+RS_INLINE void smooth(const rs_lane *of, rs_lane *to, rs_lane *slope)
+{
+	rs_lane z = *of;
+	mask_lane inside = NOT_NEGATIVE(z) & NOT_NEGATIVE(1.0 - z);
+	z = KEEP(z, inside) + KEEP(RS_ZERO + 1.0, NOT_NEGATIVE(z - 1.0) & ~inside);
+	*to = z * z * (3.0 - 2.0 * z);
+	*slope = 6.0 * z * (1.0 - z);
+}
+
 /* Where slip begins, and how much strip theory counts. */
 RS_INLINE void adhesion(int tangents, double L, strip *s)
 {
 	rs_lane xi = s->xi.v, eta = s->eta.v, psi = s->psi.v, left = 1.0 - psi * psi, root, q = xi * xi + eta * eta;
-	rs_lane square = eta * eta + left * xi * xi, den, e, B, R, z;
-	mask_lane real = NOT_NEGATIVE(square), below = NOT_NEGATIVE(left), some, short_, inside;
+	rs_lane square = eta * eta + left * xi * xi, den, e, B, R, z, size;
+	mask_lane real = NOT_NEGATIVE(square), below = NOT_NEGATIVE(left), some, short_;
 	square = KEEP(square, real);
 	RS_SQRT(root, square);
 	den = root - eta * psi;
+	RS_SQRT(size, q);
+	mask_lane solved = NOT_NEGATIVE(den);
+	rs_lane over = 1.0 / (size + SMALL), r = (KEEP(den, solved) + SMALL * KEEP(left, below)) * over, twice = 2.0 * r, fade, fade_slope;
+	smooth(&twice, &fade, &fade_slope);
 	some = real & NOT_NEGATIVE(den - LEAST_DENOMINATOR);
 	den = SELECT(some, den, RS_ZERO + 1.0);
 	e = KEEP(q / den, some) * (1.0 / L) + LEAST_TAU;
@@ -134,13 +152,13 @@ RS_INLINE void adhesion(int tangents, double L, strip *s)
 	rs_lane beyond = e - 1.0, sign = 1.0 - 2.0 * KEEP(RS_ZERO + 1.0, short_), C = 1.0 + sign * beyond;
 	B = -left * L / den;
 	R = B * C;
-	z = 2.0 * (1.0 - R);
-	inside = NOT_NEGATIVE(z) & NOT_NEGATIVE(1.0 - z);
-	rs_lane z1 = KEEP(z, inside) + KEEP(RS_ZERO + 1.0, NOT_NEGATIVE(z - 1.0) & ~inside);
 	/* without a solution: all sticks under spin alone below 1, all is FASTSIM's above */
-	z1 = KEEP(z1, some) + KEEP(RS_ZERO + 1.0, below & ~some);
-	s->weight.v = z1 * z1 * (3.0 - 2.0 * z1);
-	rs_lane slope = KEEP(-12.0 * z1 * (1.0 - z1), inside & some);
+	z = KEEP(2.0 * (1.0 - R), some) + KEEP(RS_ZERO + 1.0, below & ~some);
+	rs_lane holds, slope;
+	smooth(&z, &holds, &slope);
+	slope = KEEP(-2.0 * slope * fade, some);
+	s->weight.v = holds * fade;
+	rs_lane along = over * r / (size + 1e-200);
 	rs_lane half = KEEP(0.5 / (root + 1e-200), real);
 	for (int k = 0; k < tangents; k++) {
 		rs_lane dx = s->xi.d[k], dy = s->eta.d[k], ds = s->psi.d[k];
@@ -149,7 +167,8 @@ RS_INLINE void adhesion(int tangents, double L, strip *s)
 		rs_lane de = KEEP((2.0 * (xi * dx + eta * dy) - q / den * dden) / den, some) * (1.0 / L);
 		rs_lane dB = (2.0 * psi * ds * L - B * dden) / den;
 		s->tau.d[k] = KEEP(de, short_);
-		s->weight.d[k] = slope * KEEP(dB * C + B * sign * de, inside & some);
+		rs_lane dr = (KEEP(dden, solved) - 2.0 * SMALL * KEEP(psi * ds, below)) * over - along * (xi * dx + eta * dy);
+		s->weight.d[k] = slope * KEEP(dB * C + B * sign * de, some) + 2.0 * holds * fade_slope * dr;
 	}
 }
 

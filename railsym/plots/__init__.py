@@ -6,9 +6,12 @@ from railsym.plots.dampers import plot_damper
 from railsym.plots.eigenvalues import plot_damping, plot_eigenvalues, plot_root_locus
 from railsym.plots.mode_shape import plot_mode_shape
 from railsym.plots.profile_pair import plot_profile_pair
+from railsym.plots.runs import plot_run, plot_spectrum
 from railsym.plots.sensitivities import plot_parameter_map, plot_sensitivities
 from railsym.plots.stability_curves import (plot_change, plot_critical_speed, plot_frequency, plot_stability_map,
                                             plot_stability_report)
+from railsym.plots.track import plot_track
 
 __all__ = ["plot_change", "plot_critical_speed", "plot_damper", "plot_damping", "plot_eigenvalues", "plot_frequency", "plot_mode_shape",
-           "plot_parameter_map", "plot_profile_pair", "plot_root_locus", "plot_sensitivities", "plot_stability_map", "plot_stability_report"]
+           "plot_parameter_map", "plot_profile_pair", "plot_root_locus", "plot_run", "plot_sensitivities", "plot_spectrum", "plot_stability_map",
+           "plot_stability_report", "plot_track"]

@@ -47,6 +47,8 @@ def profile_from_zones(name, kind, zones, *, mirrored=False, description="", ori
     ProfileError
         For an unknown zone, or zones that do not meet.
     """
+    if not isinstance(zones, (list, tuple)) or not zones or not all(isinstance(zone, dict) for zone in zones):
+        raise ProfileError(f"profile {name!r}: zones must be a list of tables [[zones]], at least one")
     parts = [_sampled(name, number, zone, step) for number, zone in enumerate(zones, start=1)]
     if mirrored:
         parts = [(-y[::-1], z[::-1], -angle[::-1], turn[::-1]) for y, z, angle, turn in parts[::-1]] + parts
@@ -82,7 +84,7 @@ def _sampled(name, number, zone, step):
         return samplers[kind](zone, step)
     except KeyError as error:
         raise ProfileError(f"profile {name!r}, zone {number} ({kind}): {error.args[0]!r} is missing") from None
-    except ValueError as error:
+    except (ValueError, TypeError) as error:
         raise ProfileError(f"profile {name!r}, zone {number} ({kind}): {error}") from None
 
 

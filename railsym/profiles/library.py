@@ -100,5 +100,8 @@ def _from_zones_file(path):
                            + f"; keys are {', '.join(sorted(_KEYS))}")
     if data["unit"] != "mm":
         raise ProfileError(f"{path.name}: unit is {data['unit']!r}; zones must be in mm")
-    return profile_from_zones(data["name"], data["kind"], data["zones"], mirrored=data.get("mirrored", False),
-                              inclined=data.get("inclined", False), description=data.get("description", ""), origin=data["origin"])
+    try:
+        return profile_from_zones(data["name"], data["kind"], data["zones"], mirrored=data.get("mirrored", False),
+                                  inclined=data.get("inclined", False), description=data.get("description", ""), origin=data["origin"])
+    except ProfileError as error:
+        raise ProfileError(f"{path.name}: {error}") from None

@@ -57,16 +57,14 @@ def read_points(path, kind=None, *, mirror=False, upward=None, unit=None, shift=
     readers = {".csv": _read_csv, ".txt": _read_csv, ".prw": _read_simpack, ".prr": _read_simpack, ".whl": _read_miniprof, ".ban": _read_miniprof}
     if suffix not in readers:
         raise ProfileError(f"{path.name}: files ending in {suffix!r} are not known; there are {', '.join(sorted(readers))}, .toml")
-    try:
-        text = path.read_text(encoding="utf-8", errors="strict")
-    except UnicodeDecodeError:
-        text = path.read_text(encoding="latin-1")
-    except OSError as error:
-        raise ProfileError(f"{path.name}: {error.strerror}") from None
+    text = _text(path)
     rows, file_unit, file_kind = readers[suffix](path.name, text.splitlines())
     if not rows:
         raise ProfileError(f"{path.name}: there is no line with two numbers in it")
-    kind = kind or file_kind or _SUFFIX_KIND.get(suffix)
+    told = file_kind or _SUFFIX_KIND.get(suffix)
+    if kind and told and kind != told:
+        raise ProfileError(f"{path.name} is a {told}, and a {kind} is needed")
+    kind = kind or told
     if kind is None:
         raise ProfileError(f"{path.name}: is it a wheel or a rail? Pass kind, or write a line '# kind: wheel' into the file")
     lines, y, z = (np.array(column) for column in zip(*rows))
@@ -74,6 +72,22 @@ def read_points(path, kind=None, *, mirror=False, upward=None, unit=None, shift=
     y, z = factor * y * (-1.0 if mirror else 1.0) + shift, factor * z * (-1.0 if upward else 1.0)
     y, z = check_points(path.name, kind, y, z, lines)
     return Points(kind, y, z, description=f"{kind} from {path.name}")
+
+
+def _text(path):
+    """Text in UTF-8, with or without its mark, in UTF-16 with it, else in Latin-1."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise ProfileError(f"{path.name}: {error.strerror}") from None
+    try:
+        text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    if "\0" in text:
+        line = text[:text.index("\0")].count("\n") + 1
+        raise ProfileError(f"{path.name}, line {line}: this is no text; save the points as text in UTF-8")
+    return text
 
 
 def _factor(name, file_unit, unit):
@@ -89,16 +103,28 @@ def _factor(name, file_unit, unit):
 
 
 def _numbers(name, number, cells):
-    """Two or more numbers of a line."""
+    """Two or more numbers of a line; 1.5D-01 is Fortran's way to write them."""
+    shown = repr(" ".join(cells)[:60])
     try:
-        values = [float(cell) for cell in cells]
+        values = [float(cell if cell[:1].isalpha() else re.sub("[dD]", "e", cell)) for cell in cells]
     except ValueError:
-        raise ProfileError(f"{name}, line {number}: {' '.join(cells)!r} are not two numbers") from None
+        raise ProfileError(f"{name}, line {number}: {shown} are not two numbers") from None
     if len(values) < 2:
-        raise ProfileError(f"{name}, line {number}: {' '.join(cells)!r} is one number, two are needed")
+        raise ProfileError(f"{name}, line {number}: {shown} is one number, two are needed")
     if not all(map(math.isfinite, values[:2])):
-        raise ProfileError(f"{name}, line {number}: {' '.join(cells[:2])!r} is not a finite number; remove the point")
+        raise ProfileError(f"{name}, line {number}: {shown} is not a finite number; remove the point")
     return values
+
+
+def _cells(line):
+    """Cells of a line of a CSV file: after semicolons or tabs, or where each word has one, a comma is a decimal comma."""
+    for separator in ";\t":
+        if separator in line:
+            return [cell.strip().replace(",", ".") for cell in line.split(separator) if cell.strip()]
+    words = line.split()
+    if len(words) > 1 and all(re.fullmatch(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?", word) for word in words):
+        return [word.replace(",", ".") for word in words]
+    return [cell for cell in re.split(r"[,\s]+", line) if cell]
 
 
 def _read_csv(name, lines):
@@ -106,10 +132,10 @@ def _read_csv(name, lines):
     rows, order, unit, kind = [], (0, 1), None, None
     for number, line in enumerate(lines, start=1):
         if line.lstrip().startswith("#"):
-            found = re.fullmatch(r"\s*#\s*kind\s*[:=]\s*(wheel|rail)\s*", line)
-            kind = found[1] if found else kind
+            found = re.fullmatch(r"\s*#\s*kind\s*[:=]\s*(wheel|rail)\s*", line, re.IGNORECASE)
+            kind = found[1].lower() if found else kind
             continue
-        cells = [cell.strip() for cell in re.split(r"[,;\t]|\s+", line.strip()) if cell.strip()]
+        cells = _cells(line.strip())
         if not cells:
             continue
         if not rows and re.match(r"[A-Za-z\"]", cells[0]) and cells[0].lower() not in ("nan", "inf"):
@@ -135,18 +161,20 @@ def _header(name, number, cells):
 
 
 def _read_simpack(name, lines):
-    """Points between point.begin and point.end, treated in the order the file's comments number: shift, rotate, bounds, mirror."""
-    rows, keys, inside, closed = [], {}, False, False
+    """Points between point.begin and point.end, treated in the order the file's comments number: distance, shift, rotate, bounds, mirror."""
+    rows, keys, inside, closed, header = [], {}, False, False, False
     for number, line in enumerate(lines, start=1):
-        text = line.split("!")[0].strip()
+        text = re.split("[!%]", line)[0].strip()
         if text.lower() in ("point.begin", "point.end"):
             inside, closed = text.lower() == "point.begin", text.lower() == "point.end"
+        elif text.lower() in ("header.begin", "header.end"):
+            header = text.lower() == "header.begin"
         elif inside and text:
             values = _numbers(name, number, text.split())
             rows.append((number, values[0], values[1]))
         elif "=" in text:
             key, _, value = text.partition("=")
-            keys[key.strip().lower()] = (number, value.strip().strip("'"))
+            keys["header." * header + key.strip().lower()] = (number, value.strip().strip("'"))    # type stands in both, with two meanings
     if not closed:
         raise ProfileError(f"{name}: no block point.begin ... point.end; is it a SIMPACK profile?")
 
@@ -159,7 +187,7 @@ def _read_simpack(name, lines):
 
     if number_of("approx.smooth", 0.0):
         raise ProfileError(f"{name}, line {keys['approx.smooth'][0]}: approx.smooth is not 0; set it to 0 and pass smoothing, whose meaning is a distance")
-    kind = {0.0: "rail", 1.0: "wheel"}.get(number_of("type", -1.0)) if keys.get("type", (0, ""))[0] < keys.get("approx.smooth", (10**9, ""))[0] else None
+    kind = {0.0: "rail", 1.0: "wheel"}.get(number_of("header.type", -1.0))
     factor = number_of("units.len.f", 1000.0)
     if not factor > 0.0:
         raise ProfileError(f"{name}, line {keys['units.len.f'][0]}: units.len.f is {factor}; it is how many of the file's units are 1 m")
@@ -170,7 +198,11 @@ def _treated(rows, number_of):
     """SIMPACK's own treatment of its points."""
     if not len(rows):
         return []
-    line, y, z = rows.T
+    nearest, kept = number_of("point.dist.min", 0.0), [rows[0]]
+    for row in rows[1:]:
+        if not nearest > 0.0 or math.hypot(*(row[1:] - kept[-1][1:])) >= nearest:
+            kept.append(row)
+    line, y, z = np.array(kept).T
     y, z = y + number_of("shift.y", 0.0), z + number_of("shift.z", 0.0)
     angle = number_of("rotate", 0.0) / number_of("units.ang.f", 1.0)
     y, z = math.cos(angle) * y - math.sin(angle) * z, math.sin(angle) * y + math.cos(angle) * z
@@ -186,10 +218,11 @@ def _treated(rows, number_of):
 
 def _read_miniprof(name, lines):
     """Header ``key=value``, an empty line, then columns; ColumnDef names them (X lateral, Y height)."""
-    columns, rows, started = ["X", "Y"], [], False
+    columns, rows, started, taken_out, declared = ["X", "Y"], [], False, 0, None
     for number, line in enumerate(lines, start=1):
         text = re.split('["!%]', line)[0].strip()
         if not text:
+            taken_out += started and bool(line.strip())
             started = started or not line.strip()
         elif "=" in text and not started:
             key, _, value = text.partition("=")
@@ -197,11 +230,17 @@ def _read_miniprof(name, lines):
                 columns = [c.strip().upper() for c in value.split(",")]
                 if not {"X", "Y"} <= set(columns):
                     raise ProfileError(f"{name}, line {number}: ColumnDef={value.strip()!r} must hold X and Y")
+            elif key.strip().lower() == "xypoints" and value.strip().isdigit():
+                declared = number, int(value)
         elif started:
             cells = [cell for cell in re.split(r"[,;\s]+", text) if cell]
             words = next((k for k, cell in enumerate(cells) if cell[0].isalpha() and cell.lower() not in ("nan", "inf")), len(cells))
             values = _numbers(name, number, cells[:words] if words > 1 else cells)      # a remark may follow the numbers
-            if len(values) < len([c for c in columns if c != "*"]):
+            if len(values) < max(len([c for c in columns if c != "*"]), columns.index("X") + 1, columns.index("Y") + 1):
                 raise ProfileError(f"{name}, line {number}: {len(values)} columns, where ColumnDef has {','.join(columns)}")
             rows.append((number, values[columns.index("X")], values[columns.index("Y")]))
+    if not rows:
+        raise ProfileError(f"{name}: no points; in a MiniProf file they come after a header and an empty line")
+    if declared and len(rows) + taken_out < declared[1]:
+        raise ProfileError(f"{name}, line {declared[0]}: XYPoints={declared[1]}, and {len(rows)} points follow; the file is cut short")
     return rows, None, None

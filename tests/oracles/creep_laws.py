@@ -137,6 +137,11 @@ def area(t):
     return (t * cmath.sqrt(1 - t * t) + cmath.asin(t)) / 2 + pi / 4
 
 
+def smooth(z):
+    z = 0j if z.real < 0 else smaller(z, 1 + 0j)
+    return z * z * (3 - 2 * z)
+
+
 def fastrip_adhesion(xi, eta, psi, L):
     """tau and the weight of strip theory."""
     square = eta**2 + (1 - psi**2) * xi**2
@@ -145,9 +150,9 @@ def fastrip_adhesion(xi, eta, psi, L):
         return 1.0 + 0j, 0j
     e = (xi**2 + eta**2) / below / L
     R = (psi**2 - 1) * L / below * (2 - e if e.real < 1 else e)
-    z = 2 * (1 - R)
-    z = 0j if z.real < 0 else smaller(z, 1 + 0j)
-    return smaller(e, 1 + 0j), z * z * (3 - 2 * z)
+    spin = 1 - psi**2 if abs(psi.real) < 1 else 0j
+    r = (below + 0.5 * spin) / (cmath.sqrt(xi**2 + eta**2) + 0.5)
+    return smaller(e, 1 + 0j), smooth(2 * (1 - R)) * smooth(2 * r)
 
 
 def fastrip_strip(k, G, p0, tau, w, y, edge):
