@@ -45,6 +45,9 @@ rs_creep_law rs_creep_fastsim;
 rs_creep_law rs_creep_fastrip;
 rs_creep_law rs_creep_exact_table;
 
+/* The law of a number RS_CREEP_..., NULL where there is none. */
+rs_creep_law *rs_creep_law_at(int law);
+
 /* For each of the eight contacts; l is its number. */
 #define RS_EACH(l) for (int l = 0; l < RS_LANES; l++)
 #define RS_AT(x, l) (((double *)&(x))[l])

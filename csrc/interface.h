@@ -186,3 +186,78 @@ typedef struct {
 } rs_creep_table;
 
 int rs_creep_forces_exact(const rs_creep_table *table, int contacts, const double *in, double *force, double *slopes);
+
+enum { RS_BAD_SPEED = 8 };
+enum { RS_CONTACT_TABLE = 0, RS_CONTACT_CONES = 1 };
+enum {
+	RS_WHEEL_Y = 0,
+	RS_WHEEL_Q = 1,
+	RS_WHEEL_X = 2,
+	RS_WHEEL_TGAMMA = 3,
+	RS_WHEEL_PATCHES = 4,
+	RS_WHEEL_OUTPUTS = 5
+};
+enum {
+	RS_PATCH_LOAD = 0,
+	RS_PATCH_XI = 1,
+	RS_PATCH_FX = 4,
+	RS_PATCH_X = 7,
+	RS_PATCH_ACROSS = 8,
+	RS_PATCH_RADIUS = 9,
+	RS_PATCH_ANGLE = 10,
+	RS_PATCH_A = 11,
+	RS_PATCH_B = 12,
+	RS_PATCH_OUTPUTS = 13
+};
+
+typedef struct {
+	int kind;             /* of contact: RS_CONTACT_TABLE, RS_CONTACT_CONES */
+	const void *shape;    /* rs_contact_table or rs_contact_cones */
+	double r0;            /* m, height of the wheelset's centre over the top of rail where the contact's drop is 0 */
+	double sink;          /* m, added to the drop: how far the design position has sunk into the rail */
+	double friction;      /* - */
+	double weight;        /* -, factor on Kalker's coefficients */
+	double damping;       /* s/m, chi: load = elastic load (1 + chi penetration rate), not below zero */
+} rs_wheel;
+
+typedef struct {
+	int first;            /* coordinate x; y z yaw roll spin follow */
+	double offset[3];     /* m, design place of the centre in the track frame; the first is not used in the contact */
+	double spacing;       /* m, lateral distance of the rails' heads: their cross level turns both of them */
+	rs_wheel wheel[2];    /* left, right */
+} rs_wheelset;
+
+typedef struct {
+	int law;              /* RS_CREEP_... */
+	int strips, cells;    /* grid of FASTSIM, FaStrip */
+	double modulus;       /* N/m^2, shear */
+	double adhesion, slip; /* Polach's kA, kS */
+	int pieces;           /* of the coefficients' cubics over ln(a/b) */
+	double start, step;   /* ln(a/b) of the first node, and from node to node */
+	const double *c;      /* pieces x 4 x 4: C11, C22, C23, C33 = c0 + t (c1 + t (c2 + t c3)), t = ln(a/b) - node */
+} rs_creep_settings;
+
+typedef struct rs_wheel_rail rs_wheel_rail;
+
+rs_wheel_rail *rs_wheel_rail_create(int wheelsets, const rs_wheelset *wheelset, const rs_creep_settings *creep);
+void rs_wheel_rail_free(rs_wheel_rail *wr);
+int rs_wheel_rail_rows(rs_wheel_rail *wr, const double *q, const double *u, double V, const double *w,
+                       const double *rail, const double *seed, double *rows, double *blocks);
+void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, double *value, double *place);
+void rs_wheel_rail_outputs(const rs_wheel_rail *wr, double *wheel, double *patch);
+
+typedef struct {
+	double slope;          /* -, the radius falls by it towards the field */
+	double b0, radius;     /* m, a circle of the cone: from the wheelset's centre along the axle, and its radius */
+	double rail_y, rail_z; /* m, centre of the rail's circle: from the track's centre line, below the top of rail */
+	double rail_radius;    /* m, > 0 */
+	double a, b;           /* m^(1/2), semi-axes over the square root of the penetration */
+	double stiffness;      /* N/m^(3/2), load over penetration^(3/2) */
+} rs_cone;
+
+typedef struct {
+	int cones;             /* 1 ... RS_ZONES, tread first */
+	double r0;             /* m, height of the wheelset's centre over the top of rail at drop = 0 */
+	double limit[3];       /* largest |y| m, |roll| rad, penetration m; yaw has none */
+	rs_cone cone[3];
+} rs_contact_cones;

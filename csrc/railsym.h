@@ -83,6 +83,8 @@
  *   Returned  force, slopes  as rs_creep_forces
  *   Status    RS_OK, RS_BAD_SIZE (contacts, or a table without pieces or with least >= largest)
  *
+ * rs_wheel_rail_...    wheel-rail forces in motion: contract in wheel_rail.h
+ * rs_contact_cones     contact in closed form, for rs_wheel_rail_...: csrc/wheel_rail/cones.c
  * rs_track_...         the track's frames and rails: contracts in track.h
  *
  * rs_rigid_contact     rigid contact of one wheel on one rail, as a right-hand side (csrc/contact/contact_table.h)

@@ -13,6 +13,7 @@ from types import ModuleType
 
 _MODULE_OF = {
     "ChannelWriter": "results",
+    "ConicalContact": "conical_contact",
     "ContactPair": "contact_pair",
     "ContactTable": "contact_table",
     "LinearContact": "contact",
@@ -24,6 +25,7 @@ _MODULE_OF = {
     "Run": "results",
     "Track": "track",
     "Vehicle": "vehicle",
+    "WheelRail": "wheel_rail",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",

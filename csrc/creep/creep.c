@@ -146,3 +146,8 @@ int rs_creep_forces_exact(const rs_creep_table *table, int contacts, const doubl
 	all_batches(RS_CREEP_EXACT, &input, contacts, in, force, slopes);
 	return RS_OK;
 }
+
+rs_creep_law *rs_creep_law_at(int law)
+{
+	return law < 0 || law >= (int)(sizeof LAWS / sizeof *LAWS) ? NULL : LAWS[law];
+}
