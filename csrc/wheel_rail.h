@@ -11,14 +11,14 @@
  *                        The shapes its wheels point to are kept, not copied, and only read.
  *             creep      copied with its coefficients: law, grid, material, Kalker's coefficients over ln(a/b)
  *   Returned  the object with all its work memory, or NULL (no memory, n <= 0, unknown law or kind of contact, a grid
- *             below 1 x 1, no pieces); free with rs_wheel_rail_free
+ *             below 1 x 1, no pieces, the law of exact theory without its table); free with rs_wheel_rail_free
  * rs_wheel_rail_rows   forces of all wheels
  *   Given     q u      all coordinates of the model and their rates, unchanged; only those of the wheelsets are read
  *             V        m/s, speed of the track frames along their x; > 0; the creepages are slips over V
  *             w        3 n, rad/s, angular velocity of each wheelset's track frame, in its axes
- *             rail     8 n, or NULL (rails as designed): left y m, z m, dy/ds -, dz/ds -, then right: deviation of
- *                      each rail's head from its design place at the wheelset, + right and + down, and its slopes
- *                      along the track
+ *             rail     8 n, or NULL (rails as designed), as rs_track_rails_at gives it: left y, left z, right y, right z, m,
+ *                      deviation of each rail's head from its design place at the wheelset, + right and + down; then
+ *                      their derivatives d/ds along the track in this order
  *             seed     cq, cu (read only with blocks)
  *   Returned  rows     6 n, set, not added to: what the wheels add to the residual r, that is minus the generalised
  *                      forces on x y z yaw roll spin of each wheelset
