@@ -122,3 +122,20 @@ def test_poses_and_motions_are_used():
     track = UniformTrack(1.0 / 400.0)
     pair = Model(BOGIE).bushing_pairs
     assert np.abs(relative_poses(track, 30.0, pair)["dD"]).max() > 0.0 and body_motion(track, 30.0, 0.0, 9.81)["w2"] == 30.0 / 400.0
+
+
+def test_slow_wheelsets_follow_their_rails():
+    """At 4 m/s a wheelset's height and roll are those of the rails under it: what comes from the track arrives at the right wheel."""
+    track = Track.straight(60.0).with_irregularity("erri_b176_low", seed=1, fade=3.0)
+    sim = Simulation(BOGIE, speed=4.0, track=track, contact=CONES, channels=["s", "wheelset?.z", "wheelset?.roll", "wheelset?.y"], rate=50.0)
+    sim.run(10.0)
+    run = sim.result()
+    for wheelset in (body for body in BOGIE.bodies if body.kind == "wheelset"):
+        rails = track.rails(run["s"] + wheelset.position[0])
+        height, name = 0.5 * (rails.left_z + rails.right_z), wheelset.name
+        assert np.std(height) > 5e-4
+        np.testing.assert_allclose(run[f"{name}.z"], height, atol=0.05 * np.abs(height).max())
+        # the cone rolls by the cross level, and by its own lateral shift against the rails
+        shift = run[f"{name}.y"] - 0.5 * (rails.left_y + rails.right_y)
+        roll = (rails.right_z - rails.left_z) / 1.5 - 0.1 * shift / (0.75 - 0.46 * 0.1)
+        np.testing.assert_allclose(run[f"{name}.roll"], roll, atol=0.08 * np.abs(roll).max())
