@@ -222,3 +222,12 @@ def test_steps_land_where_the_speed_bends(monkeypatch):
     monkeypatch.setattr(Assembled, "kinks", lambda self, end: np.empty(0))
     assert np.log2(landed[0] / landed[1]) == pytest.approx(2.0, abs=0.1)
     assert errors()[1] > 5.0 * landed[1]
+
+
+def test_factors_are_kept_and_serve():
+    """One matrix for the run, and hardly more than one residual a step: what a wrong derivative or elimination would cost shows here."""
+    vehicle = rs.load_vehicle("pendolino").configured("AS_K")
+    simulation = Simulation(vehicle, speed=60.0, initial={"bogie1.y": 1e-3}, channels="s")
+    simulation.run(1.0)
+    counts = simulation.result().info.extra["counts"]
+    assert counts["steps"] == 1000 and counts["pencils"] <= 3 and counts["residuals"] < 1800

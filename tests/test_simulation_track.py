@@ -139,3 +139,35 @@ def test_slow_wheelsets_follow_their_rails():
         shift = run[f"{name}.y"] - 0.5 * (rails.left_y + rails.right_y)
         roll = (rails.right_z - rails.left_z) / 1.5 - 0.1 * shift / (0.75 - 0.46 * 0.1)
         np.testing.assert_allclose(run[f"{name}.roll"], roll, atol=0.08 * np.abs(roll).max())
+
+
+@pytest.mark.parametrize("speed", [20.0, [(0.0, 20.0), (0.5, 26.0)]])
+def test_free_body_flies_straight_past_a_transition(speed):
+    """Nothing touches it: seen from a frame that turns, cants, climbs and speeds up, its motion in space stays uniform."""
+    from oracles import free_bodies
+    from oracles.stepping import integrator
+
+    from railsym import _core
+    from railsym._core_integrator import Travel
+    from railsym.simulation import SpeedProfile
+
+    body, track, profile = free_bodies.rigid_body(), Track([Straight(4.0), Transition(12.0), Curve(80.0, 60.0, 0.1)]), SpeedProfile.of(speed)
+    model = Model(free_bodies.vehicle(body))
+    travel = Travel(track.core.pointer, [0.0], profile.pieces, 0.0, keep=track)
+    travel.add_bodies(model.assembly, _core.kernels()["rigid_body"].number, [0])
+    offset = np.array([0.0, *body.position[1:]])
+
+    def place(time, q):
+        frame = track.core.frames(np.array([float(profile.place(time))]))[0]
+        return frame["place"] + frame["attitude"] @ (offset + q[:3])
+
+    error = []
+    for step in (2e-3, 1e-3):
+        it = integrator(model, step, tolerance=1e-8)
+        it.set_travel(travel)
+        it.set_kinks(np.append(profile.when(track.kinks[track.kinks > 0.0]), 0.5))
+        assert it.start(0.0, np.zeros(6), np.zeros(6)) == 0
+        it.set_channels([])
+        assert it.run(round(1.0 / step), 1, np.empty((1000, 0)))[0] == 0
+        error.append(np.abs(place(1.0, it.state()[0]) - place(0.0, np.zeros(6)) - [20.0, 0.0, 0.0]).max())
+    assert error[1] < 5e-4 and np.log2(error[0] / error[1]) > 1.7
