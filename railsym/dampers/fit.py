@@ -23,6 +23,7 @@ _NO_MODEL = {"energy": 0.15, "least_squares": 0.05}  # relative misfit above whi
 _CONSTANT = 0.04             # a stiffness that changes by less over the tests is constant
 _WRONG = 0.03                 # relative misfit of a curve above which the model cannot be right
 _HOPELESS = 0.05              # relative misfit of constants by the energy method above which a curve is needed
+_CORNER = 4.0                 # usual changes of slope between two nodes: a corner, about which nodes are placed anew
 _STEEPEST = 100.0             # times the equivalent damping: the start of a curve
 _EVEN = 2e-3                  # even harmonics above this part of the force, and above noise: not symmetric
 
@@ -216,7 +217,7 @@ def _sharpened(loops, made, x, fixed, bounds, progress, passes=(25, 40)):
         made, x = solve.with_better_nodes(loops, made, x)
         made, x = solve.refine(loops, made, x, fixed, bounds, progress, most, left)
         misfit = _norm(solve.misfit(loops, made, x, fixed))
-        if misfit < np.hypot(_GOOD, 1.1 * solve.noise_floor(loops)):
+        if misfit < np.hypot(_GOOD, 1.1 * solve.noise_floor(loops)) and np.abs(solve.bends(made, x)).max() < _CORNER:
             break
         # what a wrong model leaves is no reason for a curve with steps
         left = min(misfit, 0.2) if misfit > np.hypot(_WRONG, 3.0 * solve.noise_floor(loops)) else 0.0

@@ -22,6 +22,7 @@ from railsym.errors import CoreError
 
 _STEP = 1e-5          # of the logarithms and rises, for the change of curves
 _SOFT = 0.06          # standard deviation of the relative change of slope from node to node
+_TAIL = 3.0           # degrees of freedom of the t density of these changes
 _LEAST_NOISE = 1e-3   # relative misfit that curves of a few nodes leave even without noise
 _BENCH_ERROR = 3e-5   # relative misfit by the bench's steps
 _WIDEST = 1.5         # of the ends' speed: the damper itself is hardly faster
@@ -186,17 +187,26 @@ def _periodic(target, rate, period):
     return out + start[:, :, None] * np.concatenate([np.ones((len(keep), 1)), product[:, :-1]], axis=1)
 
 
+def bends(made, x):
+    """Relative change of slope from node to node of the damping curve, in units of what is usual."""
+    if made.damping_nodes is None:
+        return np.zeros(0)
+    slope = made.split(x)[0] / np.diff(made.damping_nodes)
+    return (slope[1:] - slope[:-1]) / (slope[1:] + slope[:-1]) / _SOFT
+
+
 def _roughness(made, x, weight):
-    """A weak wish for slopes of the curves that change little from node to node: it decides where the tests do not."""
-    rows = []
-    damping, stiffness, _ = made.split(x)
-    if made.damping_nodes is not None:
-        slope = damping / np.diff(made.damping_nodes)
-        rows.append((slope[1:] - slope[:-1]) / (slope[1:] + slope[:-1]))
+    """A weak wish for slopes of the curves that change little from node to node: it decides where the tests do not.
+
+    For the damping curve minus the logarithm of Student's t density: a valve that opens makes one large change among small ones, and
+    a normal density would round its corner off.
+    """
+    bend = bends(made, x)
+    rows = [np.sign(bend) * np.sqrt(_TAIL * np.log1p(bend**2 / _TAIL))]
     if made.stiffness_nodes is not None:
-        slope = stiffness[1:] / np.diff(made.stiffness_nodes) * made.stiffness_nodes[-1]
-        rows.append(slope[1:] - slope[:-1])
-    return weight / _SOFT * np.concatenate(rows) if rows else np.zeros(0)
+        slope = made.split(x)[1][1:] / np.diff(made.stiffness_nodes) * made.stiffness_nodes[-1]
+        rows.append((slope[1:] - slope[:-1]) / _SOFT)
+    return weight * np.concatenate(rows)
 
 
 def _weight(loops, left=0.0):
@@ -233,7 +243,7 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40, left=0.0):
     return made, found.x
 
 
-def with_better_nodes(loops, made, x, count=16):
+def with_better_nodes(loops, made, x, count=28):
     """The same damping curve with nodes over the speeds that the damper has in these tests, denser where it bends."""
     model = made.model(x)
     record = model.force_law_record()
