@@ -18,6 +18,7 @@ MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
 METHODS = ("energy", "least_squares")
 _DIFFERENT_FREQUENCIES = 1.2  # ratio that tells the lag
 _GOOD = 1e-3                  # relative misfit below which a constant is enough
+_EXCESS = 1.6                 # times the noise that the lowest orders leave, above which a constant is not enough
 _DOUBTFUL = 0.02              # relative misfit above which a fit is begun again from another lag
 _NO_MODEL = {"energy": 0.15, "least_squares": 0.05}  # relative misfit above which a model is wrong even if none is better
 _CONSTANT = 0.04             # a stiffness that changes by less over the tests is constant
@@ -140,11 +141,17 @@ def identify(records, model="maxwell", method="least_squares", bounds=None, prog
         found = _fitted(loops, model, curve, odd, given, "energy" if len(shapes) > 1 and not curve else method, bounds, progress)
         if method == "least_squares" and len(shapes) > 1 and not curve and _norm(found[2]) < _HOPELESS:
             found = _fitted(loops, model, curve, odd, given, method, bounds, progress)
-        if best is None or _norm(found[2]) < 0.8 * _norm(best[2]):
+        if best is None or _is_better(loops, found[2], best[2]):
             best = found
-        if _norm(best[2]) < np.hypot(_GOOD, 1.3 * solve.noise_floor(loops)):
+        if _norm(best[2]) < np.hypot(_GOOD, 1.3 * solve.noise_floor(loops)) and solve.low_excess(loops, best[2]) < _EXCESS:
             break
     return _result(cleaned, loops, best, fixed, model, method, bounds, free_lag or lag != "auto", started)
+
+
+def _is_better(loops, found, best):
+    """Whether the misfit of a curve is clearly less than that of a constant, in all or in the lowest orders."""
+    before = solve.low_excess(loops, best)
+    return _norm(found) < 0.8 * _norm(best) or (before > _EXCESS and solve.low_excess(loops, found) < 0.7 * before)
 
 
 def _check(what, value, allowed):
@@ -281,14 +288,14 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
 
 
 def _errors(cleaned, loops, damper, lag):
-    found, shifted = [], loops.shifted(lag)
+    found, shifted = [], loops.coarse(max(1, loops.force.shape[1] // 128)).shifted(lag)
     for k, one in enumerate(cleaned):
         begun = perf_counter()
-        force = solve.steady(loops.only(k), damper)[0]
+        force = solve.steady(shifted.only(k), damper)[0]
         seconds = perf_counter() - begun
         measured = shifted.force[k]
         moving = force[0] - force[0].mean()
-        work, wanted = (np.mean(part * loops.velocity[k]) for part in (moving, measured))
+        work, wanted = (np.mean(part * shifted.velocity[k]) for part in (moving, measured))
         error = np.sqrt(np.mean((moving - measured) ** 2) + loops.noise[k] ** 2) / loops.scale[k]
         found.append(TestError(one.name, one.frequency, one.amplitude, float(error), float(work / wanted - 1.0),
                                float(np.ptp(moving) / np.ptp(measured) - 1.0), seconds))

@@ -65,6 +65,15 @@ def noise_floor(loops):
     return float(np.sqrt(np.mean(0.5 * np.sum((loops.deviation * loops.kept) ** 2, axis=1) / loops.scale**2)))
 
 
+def low_excess(loops, misfit, orders=5):
+    """Root mean square of the misfit over its deviation in the lowest orders: near 1 where only noise is left.
+
+    A curve that is missing shows there, while the sum over all orders is mostly noise.
+    """
+    low = (np.broadcast_to(np.arange(loops.kept.shape[1]), loops.kept.shape) < orders)[loops.kept]
+    return float(np.sqrt(np.mean((misfit / entry_deviations(loops, True))[np.concatenate([low, low])] ** 2)))
+
+
 def entry_deviations(loops, curves):
     """Standard deviation of each entry of the misfit: noise, and what the nodes of curves (or the bench's steps) leave, spread over the entries."""
     least = _LEAST_NOISE if curves else _BENCH_ERROR
