@@ -27,6 +27,9 @@ _SOFT = 0.1          # standard deviation of the relative change of slope from l
 _PARTS = 62          # independent errors in a cycle: real and imaginary parts of 31 harmonics
 _LAG_LEVELS = 18     # with 12 the lag is three times as far off
 _ROUGH_LEVELS = 10   # for that first look
+_PASSES = 8          # of an asymmetric damper, whose mean forces settle on the way
+_STRIDE = 0.1        # of the peak force: the largest change of a mean force in a pass
+_TURNS = 6           # of lag and mean forces
 _GRID = 11           # lags of the first look
 
 
@@ -42,12 +45,15 @@ class Elongation:
         Points (N, m/s) of the damper's own curve; from 0 for a symmetric one.
     misfit : float
         Root mean square of what is left of the elongation, relative to that of each test.
+    shift : ndarray (tests,) or None
+        N, by which the mean force of each test should change (asymmetric dampers, from the second pass).
     """
 
     compliance: np.ndarray
     force: np.ndarray
     speed: np.ndarray
     misfit: float
+    shift: np.ndarray | None = None
 
 
 def _level_force(loops, symmetric):
@@ -109,20 +115,47 @@ def split_elongation(loops, speed_nodes=None, symmetric=True, levels=None, befor
     if basis is None and speed_nodes is not None:
         basis = hats(np.abs(loops.velocity), speed_nodes)
     spring = force[None] if basis is None else basis * force
-    table, wanted = _table(loops, spring, _rises(force, levels))
+    rises = _rises(force, levels)
+    table, wanted = _table(loops, spring, rises)
+    free = before is not None and not symmetric
+    if free:
+        table, wanted, most = _with_means(loops, table, wanted, rises, force, before)
     size = np.sqrt(np.einsum("ij,ij->i", table, table)) + 1e-300
     table /= size[:, None]
     normal = table @ table.T
     normal.flat[::len(table) + 1] += _RIDGE
     if before is not None:
-        wish = _smooth(before, levels, len(spring)) / size
+        wish = _smooth(before, levels, len(spring), len(table)) / size
         normal += wish.T @ wish
     root = np.linalg.cholesky(normal).T
     found = nnls(root, np.linalg.solve(root.T, table @ wanted))[0]
     left = found @ table - wanted
-    slopes = (found / size)[len(spring):]
+    slopes = (found / size)[len(spring):len(spring) + len(levels) - 1]
     speed = np.concatenate([[0.0], np.cumsum(slopes * np.diff(levels))])
-    return Elongation((found / size)[:len(spring)], levels, speed - speed[int(np.argmin(np.abs(levels)))], float(np.sqrt(left @ left / len(loops.angular))))
+    shift = (found / size)[-len(most):] - most if free else None
+    return Elongation((found / size)[:len(spring)], levels, speed - speed[int(np.argmin(np.abs(levels)))],
+                      float(np.sqrt(left @ left / len(loops.angular))), shift)
+
+
+def _with_means(loops, table, wanted, rises, force, before):
+    """The problem with a change of each test's mean force as further unknowns, and with the rows that bring the damper back.
+
+    R(F + m) changes with m as R', which an earlier pass tells; its mean over a cycle is 0, or the damper would creep. Unknown is the
+    change above the lowest one allowed, ``most`` (tests,) below the present mean.
+    """
+    tests, points = force.shape
+    piece = np.clip(np.searchsorted(before.force, force) - 1, 0, len(before.force) - 2)
+    fluidity = (np.diff(before.speed) / np.diff(before.force))[piece]
+    changes = np.zeros((tests, tests, points))
+    changes[np.arange(tests), np.arange(tests)] = fluidity
+    moved, _ = _table(loops, np.zeros((0, tests, points)), changes)
+    creep = 1.0 / (loops.angular * np.sqrt(np.mean(loops.displacement**2, axis=1)))
+    rows = np.zeros((len(table) + tests, tests))
+    rows[len(table) - len(rises):len(table)] = rises.mean(axis=2) * creep
+    rows[len(table):] = np.diag(fluidity.mean(axis=1) * creep)
+    most = _STRIDE * np.abs(loops.force).max(axis=1)
+    table = np.hstack([np.vstack([table, moved]), rows])
+    return table, np.concatenate([wanted, np.zeros(tests)]) + most @ table[-tests:], most
 
 
 def _table(loops, spring, rises):
@@ -139,11 +172,11 @@ def _table(loops, spring, rises):
     return flat[:-1], flat[-1]
 
 
-def _smooth(before, levels, first):
+def _smooth(before, levels, first, columns):
     """Rows of the wish for slopes of R that change little from level to level."""
     slope = np.maximum(np.diff(np.interp(levels, before.force, before.speed)) / np.diff(levels), 1e-3 * np.ptp(before.speed) / np.ptp(before.force))
     inside = np.flatnonzero(np.abs(levels[1:-1]) > 0.0)     # an asymmetric curve may have a corner at rest
-    rows = np.zeros((len(inside), first + len(slope)))
+    rows = np.zeros((len(inside), columns))
     weight = before.misfit / np.sqrt(_PARTS) / _SOFT / (slope[inside] + slope[inside + 1])
     rows[np.arange(len(inside)), first + inside] = -weight
     rows[np.arange(len(inside)), first + inside + 1] = weight
@@ -153,12 +186,14 @@ def _smooth(before, levels, first):
 def refined_elongation(loops, speed_nodes=None, symmetric=True):
     """`split_elongation` in three passes, each with levels after the curve of the one before."""
     found = best = split_elongation(loops, speed_nodes, symmetric)
-    for k in range(2 if symmetric else 4):
-        if not symmetric:
-            loops = replace(loops, mean=_mean_force(loops, found))
+    if not symmetric:
+        loops = replace(loops, mean=_mean_force(loops, found))
+    for k in range(2 if symmetric else _PASSES):
         found = split_elongation(loops, speed_nodes, symmetric, finer_levels(loops, found, symmetric), found)
         # where the mean forces do not settle, the pass that leaves least counts
         best = found if symmetric or k == 0 or found.misfit < best.misfit else best
+        if not symmetric:
+            loops = replace(loops, mean=loops.mean + found.shift)
     return best
 
 
@@ -186,7 +221,18 @@ def _rises(force, levels):
 
 
 def lag_by_elongation(loops, speed_nodes=None, symmetric=True, levels=None):
-    """Lag (s) of the force where the misfit of the elongation is least."""
+    """Lag (s) of the force where the misfit of the elongation is least; of an asymmetric damper with its mean forces, in turns."""
+    lag = _searched_lag(loops, speed_nodes, symmetric, levels)
+    for _ in range(0 if symmetric else _TURNS):
+        found = refined_elongation(loops.coarse().shifted(lag), speed_nodes, False)
+        loops = replace(loops, mean=_mean_force(loops.coarse().shifted(lag), found))
+        before, lag = lag, _searched_lag(loops, speed_nodes, False, levels)
+        if abs(lag - before) < 2e-5:
+            break
+    return lag
+
+
+def _searched_lag(loops, speed_nodes, symmetric, levels):
     from scipy.optimize import minimize_scalar
 
     def left(loops, levels, basis, lag):
@@ -201,4 +247,4 @@ def lag_by_elongation(loops, speed_nodes=None, symmetric=True, levels=None):
     rough, fine = prepared(32, _ROUGH_LEVELS), prepared(64, _LAG_LEVELS)
     k = int(np.argmin([left(*rough, lag) for lag in grid]))
     around = grid[max(k - 1, 0)], grid[min(k + 1, _GRID - 1)]
-    return float(minimize_scalar(lambda lag: left(*fine, lag), bounds=around, method="bounded", options={"xatol": 1e-5, "maxiter": 20}).x)
+    return float(minimize_scalar(lambda lag: left(*fine, lag), bounds=around, method="bounded", options={"xatol": 2e-5, "maxiter": 20}).x)
