@@ -275,7 +275,7 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
         deviation = solve.entry_deviations(loops, made.damping_nodes is not None or made.stiffness_nodes is not None)
         spread = covariance(jacobian, deviation * whiten, misfit * whiten)
         confidence = intervals(made, x, spread, freedom)
-        told = identifiability(made, x, jacobian, spread, made.bounds(bounds))
+        told = identifiability(made, x, jacobian, spread, made.bounds(bounds), confidence)
     tests = _errors(cleaned, loops, damper, lag)
     shifted = loops.shifted(lag)
     stiffness = damper.series_stiffness
@@ -316,6 +316,8 @@ def _message(loops, model, method, misfit, lag, lag_known, made, x, stiffness, d
             said.append("least squares will leave less")
         else:
             said.append("that is more than noise, but no other model leaves less")
+    if method == "energy" and made.damping_nodes is not None and made.damping_nodes[0] < 0.0:
+        said.append("the force is not the same in both directions: its curve by the energy method is rough, take least squares")
     if made.kind == "maxwell" and loops.angular.max() * damping / np.max(stiffness) < 0.02:
         said.append(f"the series stiffness {stiffness:.3g} N/m is too high to matter in these tests: a viscous model is enough")
     elif made.stiffness_nodes is not None and made.split(x)[1][1:].sum() < _CONSTANT:

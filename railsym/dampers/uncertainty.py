@@ -87,7 +87,7 @@ def _band(combine, x, spread, factor):
     return middle - half, middle + half
 
 
-def identifiability(parametrisation, x, jacobian, spread, bounds):
+def identifiability(parametrisation, x, jacobian, spread, bounds, confidence):
     """Condition, correlations, and warnings in words."""
     names = parametrisation.names
     length = np.linalg.norm(jacobian, axis=0)
@@ -111,7 +111,20 @@ def identifiability(parametrisation, x, jacobian, spread, bounds):
             said.append(f"{names[i]} is at its bound")
         elif names[i] != "lag" and 1.96 * size[i] > 0.2:
             said.append(f"{names[i]} is known to no better than {100 * 1.96 * size[i]:.0f} %")
-    return Identifiability(condition, correlation, tuple(names), tuple(said))
+    return Identifiability(condition, correlation, tuple(names), (*said, *_loose_curves(confidence)))
+
+
+def _loose_curves(confidence):
+    """Messages for curves whose intervals are wide: the damping curve beside its peak, the stiffness beside itself."""
+    said = []
+    for name, limit, of in (("damping_curve", 0.03, "of its peak force"), ("series_stiffness_curve", 0.2, "somewhere")):
+        if name in confidence:
+            low, high = confidence[name]
+            middle = np.abs(0.5 * (low + high))
+            width = float(np.max(0.5 * (high - low) / (middle.max() if name == "damping_curve" else middle)))
+            if width > limit:
+                said.append(f"{name} is known to no better than {100 * width:.0f} % {of}")
+    return said
 
 
 def _unit(name):
