@@ -17,6 +17,7 @@ from railsym.dampers.record import CleanRecord, Record, RecordError, RecordWarni
 _MOST_SAMPLES = 512         # per cycle kept: beyond 256 harmonics there is only noise
 _FEWEST_SAMPLES = 384       # per cycle, that the means of blocks of samples leave: 1 % is lost of the 31st harmonic
 _MOST_HARMONICS = 15        # of the imposed motion
+_FIRST, _SECOND = np.array([5.0, 2.0, -1.0]) / 6.0, np.array([0.4, 0.3, 0.2, 0.1])     # line through 3 and 4 values, at its beginning
 _ASYMMETRY = 0.004          # of the first harmonic: even harmonics above it (and above noise) belong to an asymmetric damper
 
 
@@ -106,7 +107,10 @@ class _Steady:
         top = min(orders, (count - 1) // 2)
         departure = self.harmonics[channel, :, 1:1 + top] - self.mean_harmonics[channel, 1:1 + top]
         variance = np.sum(departure.real**2 + departure.imag**2, axis=0) / (number * (number - 1))
-        return np.sqrt(np.convolve(variance, np.ones(5))[2:-2] / np.convolve(np.ones(top), np.ones(5))[2:-2])
+        shared = np.convolve(variance, np.ones(5))[2:-2] / np.convolve(np.ones(top), np.ones(5))[2:-2]
+        # the two lowest by the straight line through their neighbours: the mean would be too low for noise that falls with frequency
+        shared[:2] = max(variance[:3] @ _FIRST, 0.5 * shared[0]), variance[:4] @ _SECOND
+        return np.sqrt(shared)
 
 
 def clean_all(records, *, check_units=True):

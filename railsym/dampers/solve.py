@@ -204,14 +204,14 @@ def bends(made, x):
     return (slope[1:] - slope[:-1]) / (slope[1:] + slope[:-1]) / _SOFT
 
 
-def _roughness(made, x, weight):
+def _roughness(made, x, weight, tail=_TAIL):
     """A weak wish for slopes of the curves that change little from node to node: it decides where the tests do not.
 
     For the damping curve minus the logarithm of Student's t density: a valve that opens makes one large change among small ones, and
-    a normal density would round its corner off.
+    a normal density (``tail`` of 1e6) would round its corner off.
     """
     bend = bends(made, x)
-    rows = [np.sign(bend) * np.sqrt(_TAIL * np.log1p(bend**2 / _TAIL))]
+    rows = [np.sign(bend) * np.sqrt(tail * np.log1p(bend**2 / tail))]
     if made.stiffness_nodes is not None:
         slope = made.split(x)[1][1:] / np.diff(made.stiffness_nodes) * made.stiffness_nodes[-1]
         rows.append((slope[1:] - slope[:-1]) / _SOFT)
@@ -223,11 +223,11 @@ def _weight(loops, left=0.0):
     return max(noise_floor(loops), _LEAST_NOISE, left) / np.sqrt(2.0 * loops.kept.sum())
 
 
-def evidence(loops, made, x, fixed, weight=None, state=None):
+def evidence(loops, made, x, fixed, weight=None, state=None, tail=_TAIL):
     """Slopes of the misfit and, below them, of the wish for smooth curves."""
     weight = _weight(loops) if weight is None else weight
-    own = _roughness(made, x, weight)
-    rows = np.array([(_roughness(made, x + _STEP * unit, weight) - own) / _STEP for unit in np.eye(x.size)]).T
+    own = _roughness(made, x, weight, tail)
+    rows = np.array([(_roughness(made, x + _STEP * unit, weight, tail) - own) / _STEP for unit in np.eye(x.size)]).T
     return np.concatenate([jacobian(loops, made, x, fixed, state) * entry_weights(loops)[:, None], rows])
 
 
@@ -237,17 +237,17 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40, left=0.0):
 
     low, high = made.bounds(bounds)
     state = np.zeros_like(loops.force)
-    weight = _weight(loops, left)
+    weight, tail = _weight(loops, left), 1e6 if left else _TAIL      # what a wrong model leaves is no reason for corners
 
     whiten = entry_weights(loops)
 
     def function(p):
-        return np.concatenate([misfit(loops, made, p, fixed, state) * whiten, _roughness(made, p, weight)])
+        return np.concatenate([misfit(loops, made, p, fixed, state) * whiten, _roughness(made, p, weight, tail)])
 
     x = np.clip(x, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
     if not np.isfinite(function(x)).all():
         return made, x
-    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight, state), bounds=(low, high), x_scale="jac", ftol=1e-5,
+    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight, state, tail), bounds=(low, high), x_scale="jac", ftol=1e-5,
                           xtol=1e-6, gtol=1e-12, max_nfev=most, verbose=2 if progress else 0)
     return made, found.x
 
