@@ -11,7 +11,7 @@ import numpy as np
 from railsym.dampers import elongation, energy, solve
 from railsym.dampers.models import DamperModel
 from railsym.dampers.parametrisation import Parametrisation, stiffness_nodes
-from railsym.dampers.uncertainty import Identifiability, covariance, identifiability, intervals
+from railsym.dampers.uncertainty import Identifiability, covariance, estimated_weights, identifiability, intervals
 from railsym.errors import ModelError
 
 MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
@@ -273,7 +273,7 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
         jacobian = solve.evidence(loops, made, x, fixed)
         whiten = solve.entry_weights(loops)
         deviation = solve.entry_deviations(loops, made.damping_nodes is not None or made.stiffness_nodes is not None)
-        spread = covariance(jacobian, deviation * whiten, misfit * whiten)
+        spread = covariance(jacobian, deviation * whiten, misfit * whiten) * estimated_weights([one.cycles for one in cleaned])
         confidence = intervals(made, x, spread, freedom)
         told = identifiability(made, x, jacobian, spread, made.bounds(bounds), confidence)
     tests = _errors(cleaned, loops, damper, lag)

@@ -171,6 +171,9 @@ def compare_sizes(cleaned):
         if ratio < _TURNED and own.imag < 0.0:
             raise RecordError(f"{one.label}: its damper gives energy and is {1.0 / ratio:.3g} times softer than in the other tests: "
                               "displacement and force are swapped")
+        near = [other for other, at in zip(stiffness, cleaned) if abs(at.frequency / one.frequency - 1.0) < 0.05 and other.imag > 0.0]
+        if own.imag < 0.0 and near and max(np.angle(near)) > np.angle(own) + 0.25 and not 0.5 < abs(own) / np.median(np.abs(near)) < 2.0:
+            raise RecordError(f"{one.label}: its damper gives energy, unlike in other tests of its frequency: displacement and force are swapped")
         if not 0.005 < ratio < 200.0:
             raise RecordError(f"{one.label}: its dynamic stiffness {abs(own):.3g} N/m is {ratio:.3g} times that of the other tests: "
                               "a unit of its displacement or force is off by 1000")
