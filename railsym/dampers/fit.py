@@ -135,6 +135,12 @@ def identify(records, model="maxwell", method="least_squares", bounds=None, prog
     free_lag = lag == "auto" and loops.angular.max() > _DIFFERENT_FREQUENCIES * loops.angular.min()
     fixed = 0.0 if lag == "auto" else float(lag)
     given = None if free_lag else fixed
+    best = _best_shape(loops, damping, model, odd, given, method, bounds, progress)
+    return _result(cleaned, loops, best, fixed, model, method, bounds, free_lag or lag != "auto", started)
+
+
+def _best_shape(loops, damping, model, odd, given, method, bounds, progress):
+    """Parametrisation, vector and misfit of a constant damping or a curve, as asked; of both the constant where it leaves no more than noise."""
     shapes = {"constant": (False,), "curve": (True,), "auto": (False, True)}[damping]
     best = None
     for curve in shapes:
@@ -145,7 +151,7 @@ def identify(records, model="maxwell", method="least_squares", bounds=None, prog
             best = found
         if _norm(best[2]) < np.hypot(_GOOD, 1.3 * solve.noise_floor(loops)) and solve.low_excess(loops, best[2]) < _EXCESS:
             break
-    return _result(cleaned, loops, best, fixed, model, method, bounds, free_lag or lag != "auto", started)
+    return best
 
 
 def _is_better(loops, found, best):
