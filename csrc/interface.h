@@ -188,6 +188,7 @@ typedef struct {
 	int pieces;           /* of the coefficients' cubics over ln(a/b) */
 	double start, step;   /* ln(a/b) of the first node, and from node to node */
 	const double *c;      /* pieces x 4 x 4: C11, C22, C23, C33 = c0 + t (c1 + t (c2 + t c3)), t = ln(a/b) - node */
+	const rs_creep_table *table; /* of RS_CREEP_EXACT, kept, not copied; others need none */
 } rs_creep_settings;
 
 typedef struct rs_wheel_rail rs_wheel_rail;
