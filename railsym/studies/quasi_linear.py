@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Hunting of a pair of profiles by the quasi-linear theory: the linear model with the contact that belongs to an amplitude.
+
+At the critical speed that belongs to an amplitude, a motion so large neither grows nor decays. The conicity is that of rigid
+profiles (EN 15302), or of elastic contact under the vehicle's wheel load, which is lower at small amplitudes, where rigid contact jumps.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from railsym.errors import ContactError, RailsymError
+
+AMPLITUDES = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0]) * 1e-3
+_BAND = (1.0, 12.0)         # Hz, of hunting
+_LEAST = 5e-5               # m: below it no conicity is quoted
+
+
+def mean_wheel_load(vehicle):
+    """Mean static wheel load, N."""
+    from railsym.equilibrium import static_preload
+    from railsym.model import Model
+
+    return float(np.mean(static_preload(Model(vehicle)).wheel_loads))
+
+
+def contact_at(pair, amplitude, load=None, **more):
+    """Linear contact of a pair at an amplitude (m); with a load (N) its conicity is that of elastic contact.
+
+    Raises
+    ------
+    ContactError
+        The pair has none there.
+    """
+    contact = pair.linear_contact(float(amplitude), **more)
+    if load is None:
+        return contact
+    conicity = float(np.ravel(pair.equivalent_conicity(float(amplitude), load=load).conicity)[0])
+    if not np.isfinite(conicity):
+        raise ContactError(f"no elastic conicity at an amplitude of {1e3 * amplitude:g} mm")
+    return replace(contact, conicity=conicity)
+
+
+def quasi_linear(vehicle, pair, load=None, amplitudes=AMPLITUDES, **more):
+    """Critical speeds against amplitude.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    pair : ContactPair
+    load : float, optional
+        N, for elastic conicity.
+    amplitudes : array_like, shape (n,)
+        m
+    more
+        Fields of LinearContact, such as friction.
+
+    Returns
+    -------
+    dict of str to ndarray (n,)
+        ``amplitude`` m, ``conicity``, ``speed`` m/s, ``frequency_hz``; nan where there is none.
+    """
+    from railsym.critical_speed import critical_speed
+
+    rows = []
+    for amplitude in amplitudes:
+        row = [float(amplitude), np.nan, np.nan, np.nan]
+        try:
+            contact = contact_at(pair, amplitude, load, **more)
+            found = critical_speed(vehicle, contact=contact)
+            row[1:] = contact.conicity, *(float(np.ma.filled(value, np.nan)) for value in (found.speed, found.frequency_hz))
+        except ContactError:
+            pass                  # the wheel leaves the profiles, or the flange has no linear contact
+        rows.append(row)
+    return dict(zip(("amplitude", "conicity", "speed", "frequency_hz"), np.array(rows).T))
+
+
+def hunting_mode(vehicle, pair, speed, amplitude, load=None, **more):
+    """The least damped lateral mode from 1 to 12 Hz at a speed (m/s) with the contact of an amplitude (m).
+
+    Returns
+    -------
+    railsym.modes.Mode or None
+        None where the pair has no linear contact at that amplitude, or it is too small to have a conicity.
+    """
+    from railsym.linear import linear_model
+    from railsym.modes import modes
+
+    if not amplitude > _LEAST:
+        return None
+    try:
+        contact = contact_at(pair, amplitude, load, **more)
+    except RailsymError:
+        return None
+    found = modes(linear_model(vehicle, contact), speed)
+    lateral = [mode for mode in found if _BAND[0] <= mode.frequency_hz <= _BAND[1] and mode.parity != "symmetric"]
+    return min(lateral, key=lambda mode: mode.damping_ratio)
