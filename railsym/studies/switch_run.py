@@ -49,7 +49,7 @@ class SwitchRun:
         m/s^2, largest filtered acceleration in the last 1.5 s.
     growth : float
         1/s, rate at which the motion of the wheelset that moves most grows (+) or decays (-) behind the switch: straight line
-        through the logarithm of its half-waves.
+        through the logarithm of its half-waves above 0.05 mm; nan with fewer than four.
     """
 
     speed: float
@@ -181,6 +181,7 @@ def _growth(time, values):
     from railsym.criteria.instability import half_waves
 
     peaks, places = half_waves(values - values.mean())
+    peaks, places = peaks[peaks > _STILL], places[peaks > _STILL]
     if len(peaks) < 4:
         return np.nan
     return float(np.polyfit(time[places], np.log(peaks), 1)[0])
