@@ -24,6 +24,11 @@ _COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate",
 class _Parser(argparse.ArgumentParser):
     """A parser that raises instead of printing its usage and leaving."""
 
+    def __init__(self, *arguments, **options):
+        super().__init__(*arguments, **options)
+        # -20km/h is a value, to be refused by whoever knows why
+        self._negative_number_matcher = re.compile(r"-\.?\d\S*")
+
     def error(self, message):
         raise CommandError(f"{message}; see {self.prog} --help")
 

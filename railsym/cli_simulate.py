@@ -44,6 +44,7 @@ def add_simulate(commands, typed, add_vehicle, add_output):
     command.add_argument("--animate", metavar="FILE", help="animation from above and behind: .gif, or .mp4 with ffmpeg")
     command.add_argument("--animate-range", metavar="RANGE", help="part that is animated, such as 2:4s (default: the last 2 s)")
     command.add_argument("--animate-factor", type=float, metavar="NUMBER", help="exaggeration of motions (default: so that they are seen)")
+    command.add_argument("--animate-frames", type=int, default=96, metavar="NUMBER", help="pictures, 16 a second (default 96)")
     add_output(command)
     return command
 
@@ -130,12 +131,12 @@ def duration_and_track(options, vehicle, speed):
         duration = _DURATION if options.duration is None else options.duration
         track = Track.straight(ahead + speed * duration + _AHEAD) if options.irregularity else None
     else:
-        longest = track.length / speed                   # the foremost body begins at s = 0
-        duration = longest * (1.0 - 1e-9) if options.duration is None else options.duration
-        if duration > longest:
+        # the foremost body begins at s = 0, and stays within the track by a step
+        longest = options.step * (np.ceil(track.length / speed / options.step - 1e-6) - 1.0)
+        duration = longest if options.duration is None else options.duration
+        if duration > longest + 1e-9:
             raise CommandError(f"track {track.name!r} is {track.length:.6g} m long, and {duration:g} s at {KMH * speed:.4g} km/h take {speed * duration:.6g} m: "
                                f"a --duration of at most {np.floor(100.0 * longest) / 100.0:g}s fits, or a longer track")
-        duration = options.step * np.floor(duration / options.step + 1e-6)
     return duration, _with_irregularity(track, options)
 
 
@@ -192,7 +193,8 @@ def _animate(found, vehicle, track, options):
 
     end = float(found.time[-1])
     start, end = _range(options.animate_range) if options.animate_range else (max(0.0, end - 2.0), end)
-    made = animate(found, vehicle, options.animate, track=track, start=start, end=end, factor=options.animate_factor, progress=sys.stderr.isatty())
+    made = animate(found, vehicle, options.animate, track=track, start=start, end=end, factor=options.animate_factor, frames=options.animate_frames,
+                   progress=sys.stderr.isatty())
     if options.json != "-":
         say(made.message)
 

@@ -61,14 +61,14 @@ def test_track_by_name_and_to_its_end(capsys, tmp_path):
     saved = rs.Run.from_csv(target)
     vehicle = rs.load_vehicle("pendolino")
     ahead = max(body.position[0] for body in vehicle.bodies)
-    # the foremost body reaches the end within a step
-    assert 50.0 - 200 / 3.6 * 2e-3 < saved["s"][-1] + ahead <= 50.0 or 50.0 - 200 / 3.6 * 6e-3 < saved["s"][-1] + ahead <= 50.0
+    # the foremost body comes within two steps of the end; the last sample is up to 5 ms older
+    assert 50.0 - 200 / 3.6 * 7e-3 < saved["s"][-1] + ahead <= 50.0
     assert "car.z" in saved.channels
 
 
 def test_animation(capsys, tmp_path):
     target = tmp_path / "run.gif"
-    status, out, _ = run(capsys, *SHORT[:-1], "0.3s", "--conicity", "0.2", "--animate", str(target), "--animate-range", "0.1:0.2s", "--animate-factor", "30")
+    status, out, _ = run(capsys, *SHORT[:-1], "0.3s", "--conicity", "0.2", "--animate", str(target), "--animate-range", "0.1:0.2s", "--animate-frames", "4", "--animate-factor", "30")
     assert status == 0 and "motions times 30" in out and target.read_bytes().startswith(b"GIF")
 
 

@@ -16,5 +16,4 @@ from railsym.plots.track import plot_track
 
 __all__ = ["plot_change", "plot_critical_speed", "plot_damper", "plot_damper_map", "plot_damping", "plot_eigenvalues", "plot_frequency",
            "plot_mode_shape", "plot_parameter_map", "plot_profile_pair", "plot_quasi_linear", "plot_root_locus", "plot_run", "plot_sensitivities",
-           "plot_spectrum",
-           "plot_stability_map", "plot_stability_report", "plot_switch_study", "plot_track"]
+           "plot_spectrum", "plot_stability_map", "plot_stability_report", "plot_switch_study", "plot_track"]

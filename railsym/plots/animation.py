@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import io
 import shutil
+import subprocess
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -106,13 +108,13 @@ def animate(run, vehicle, path, *, track=None, start=None, end=None, slowdown=No
     times, slowdown = _times(run, start, end, slowdown, frames)
     states = _states(run, vehicle, times)
     scene = _Scene(run, vehicle, track, times, states, factor)
-    shots = (scene.draw(k, slowdown) for k in range(len(times)))
+    shots = (scene.pixels(k, slowdown) for k in range(len(times)))
     from railsym.progress import followed
 
     shots = followed(shots, len(times), "pictures", progress)
     write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
     try:
-        write(shots, scene.figure, path)
+        write(shots, path)
     except OSError as error:
         raise SimulationError(f"{path}: {error.strerror or error}") from None
     finally:
@@ -185,15 +187,29 @@ class _Scene:
         self.panels = [Panel(whole, views[0], moves[0], (0, 1), self.factor), Panel(bogie, views[0], moves[0], (0, 1), self.factor),
                        Panel(behind, views[1], moves[1], (1, 2), self.factor)]
         self.rails = PassingTrack((whole, bogie, behind), vehicle, self.factor)
+        self.still, self.movable = None, []
 
-    def draw(self, k, slowdown):
-        """Bring the figure to the k-th picture and return it."""
+    def pixels(self, k, slowdown):
+        """The k-th picture, (height, width, 4) bytes. Axes are drawn once, what moves is drawn over them."""
+        canvas = self.figure.canvas
+        if self.still is None:
+            self.movable = sorted([self.title, *self.rails.artists, *(artist for panel in self.panels for artist in panel.artists)], key=lambda a: a.zorder)
+            for artist in self.movable:
+                artist.set_animated(True)
+            canvas.draw()
+            self.still = canvas.copy_from_bbox(self.figure.bbox)
+        self._place(k, slowdown)
+        canvas.restore_region(self.still)
+        for artist in self.movable:
+            self.figure.draw_artist(artist)
+        return np.asarray(canvas.buffer_rgba()).copy()
+
+    def _place(self, k, slowdown):
         for panel in self.panels:
             panel.show(k)
         self.rails.show(self.track, float(self.states["s"][k]))
         self.title.set_text(f"t = {self.times[k]:.2f} s   s = {self.states['s'][k]:.1f} m   {3.6 * self.states['V'][k]:.0f} km/h   "
                             f"(motions × {self.factor:g}, {slowdown:.2g} times slower)")
-        return self.figure
 
     def close(self):
         """Let the figure go."""
@@ -208,14 +224,13 @@ def _factor(moves):
     return float(max(1.0, _LADDER[np.argmin(np.abs(np.log(_LADDER * largest / _DRAWN)))]))
 
 
-def _write_gif(shots, figure, path):
+def _write_gif(shots, path):
     """Pictures in one palette; Pillow stores of each only what differs from the one before."""
     from PIL import Image
 
     pictures, palette = [], None
     for shot in shots:
-        shot.canvas.draw()
-        picture = Image.fromarray(np.asarray(shot.canvas.buffer_rgba())).convert("RGB")
+        picture = Image.fromarray(shot).convert("RGB")
         palette = picture.quantize(_COLOURS) if palette is None else palette
         pictures.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
     held = io.BytesIO()
@@ -223,10 +238,14 @@ def _write_gif(shots, figure, path):
     path.write_bytes(held.getvalue())
 
 
-def _write_mp4(shots, figure, path):
-    from matplotlib.animation import FFMpegWriter
-
-    writer = FFMpegWriter(fps=_PER_SECOND, extra_args=["-pix_fmt", "yuv420p"])
-    with writer.saving(figure, str(path), figure.dpi):
-        for _ in shots:
-            writer.grab_frame()
+def _write_mp4(shots, path):
+    """Pictures as raw bytes through ffmpeg, which wants even numbers of rows and columns."""
+    shots = iter(shots)
+    first = next(shots)
+    height, width = (2 * (size // 2) for size in first.shape[:2])
+    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}", "-r", str(_PER_SECOND), "-i", "-",
+               "-pix_fmt", "yuv420p", str(path)]
+    data = b"".join(np.ascontiguousarray(shot[:height, :width]).tobytes() for shot in chain([first], shots))
+    done = subprocess.run(command, input=data, capture_output=True)
+    if done.returncode:
+        raise SimulationError(f"{path}: ffmpeg failed: {done.stderr.decode(errors='replace').strip()}")

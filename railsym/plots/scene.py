@@ -88,6 +88,11 @@ class Panel:
             if outline.kind in _FILLED:
                 self.fills[k] = axes.fill(*points.T, color=colour, alpha=_FILLED[outline.kind], linewidth=0.0, zorder=3)[0]
 
+    @property
+    def artists(self):
+        """What moves."""
+        return [*self.lines, *self.fills.values()]
+
     def show(self, k):
         """Move everything to the k-th picture."""
         for number, (outline, move, line) in enumerate(zip(self.drawn, self.moves, self.lines)):
@@ -117,6 +122,11 @@ class PassingTrack:
         self.rails = [[panel.plot([], [], color=_RAIL, linewidth=1.6, zorder=1)[0] for _ in range(2)] for panel in self.above]
         self.sleepers = [panel.plot([], [], color=_PALE, linewidth=2.2, zorder=0)[0] for panel in self.above]
         self.heads = [behind.fill([0.0], [0.0], color=_RAIL, linewidth=0.0, zorder=1)[0] for _ in range(2)]
+
+    @property
+    def artists(self):
+        """What moves."""
+        return [*(line for pair in self.rails for line in pair), *self.sleepers, *self.heads]
 
     def show(self, track, s):
         """Bring the track to the vehicle's place s (m)."""

@@ -34,24 +34,28 @@ def contact_at(pair, amplitude, load=None, **more):
     ContactError
         The pair has none there.
     """
-    contact = pair.linear_contact(float(amplitude), **more)
+    return _elastic(pair.linear_contact(float(amplitude), **more), pair, load)
+
+
+def _elastic(contact, pair, load):
+    """The same contact with the conicity under a load (N); itself without load."""
     if load is None:
         return contact
-    conicity = float(np.ravel(pair.equivalent_conicity(float(amplitude), load=load).conicity)[0])
+    conicity = float(np.ravel(pair.equivalent_conicity(contact.amplitude, load=load).conicity)[0])
     if not np.isfinite(conicity):
-        raise ContactError(f"no elastic conicity at an amplitude of {1e3 * amplitude:g} mm")
+        raise ContactError(f"no elastic conicity at an amplitude of {1e3 * contact.amplitude:g} mm")
     return replace(contact, conicity=conicity)
 
 
-def quasi_linear(vehicle, pair, load=None, amplitudes=AMPLITUDES, **more):
+def quasi_linear(vehicle, pair, loads=(None,), amplitudes=AMPLITUDES, **more):
     """Critical speeds against amplitude.
 
     Parameters
     ----------
     vehicle : Vehicle
     pair : ContactPair
-    load : float, optional
-        N, for elastic conicity.
+    loads : sequence of float or None
+        N, for elastic conicity; None: conicity of rigid profiles.
     amplitudes : array_like, shape (n,)
         m
     more
@@ -59,22 +63,27 @@ def quasi_linear(vehicle, pair, load=None, amplitudes=AMPLITUDES, **more):
 
     Returns
     -------
-    dict of str to ndarray (n,)
-        ``amplitude`` m, ``conicity``, ``speed`` m/s, ``frequency_hz``; nan where there is none.
+    tuple of dict of str to ndarray (n,)
+        A load each: ``amplitude`` m, ``conicity``, ``speed`` m/s, ``frequency_hz``; nan where there is none.
     """
+    rows = np.full((len(loads), len(amplitudes), 4), np.nan)
+    rows[:, :, 0] = amplitudes
+    for k, amplitude in enumerate(amplitudes):
+        try:
+            contact = pair.linear_contact(float(amplitude), **more)
+        except ContactError:
+            continue              # the wheel leaves the profiles, or the flange has no linear contact
+        for row, load in zip(rows[:, k], loads):
+            row[1:] = _critical(vehicle, _elastic(contact, pair, load))
+    return tuple(dict(zip(("amplitude", "conicity", "speed", "frequency_hz"), table.T)) for table in rows)
+
+
+def _critical(vehicle, contact):
+    """Conicity, critical speed (m/s) and frequency (Hz) there; nan where there is none."""
     from railsym.critical_speed import critical_speed
 
-    rows = []
-    for amplitude in amplitudes:
-        row = [float(amplitude), np.nan, np.nan, np.nan]
-        try:
-            contact = contact_at(pair, amplitude, load, **more)
-            found = critical_speed(vehicle, contact=contact)
-            row[1:] = contact.conicity, *(float(np.ma.filled(value, np.nan)) for value in (found.speed, found.frequency_hz))
-        except ContactError:
-            pass                  # the wheel leaves the profiles, or the flange has no linear contact
-        rows.append(row)
-    return dict(zip(("amplitude", "conicity", "speed", "frequency_hz"), np.array(rows).T))
+    found = critical_speed(vehicle, contact=contact)
+    return contact.conicity, *(float(np.ma.filled(value, np.nan)) for value in (found.speed, found.frequency_hz))
 
 
 def hunting_mode(vehicle, pair, speed, amplitude, load=None, **more):

@@ -147,7 +147,7 @@ def switch_study(vehicle, pair=None, *, ratios=RATIOS, reference=None, amplitude
     load, given = mean_wheel_load(vehicle), _given(friction)
     modes = tuple(hunting_mode(vehicle, pair, run.speed, run.mean_motion, load, **given) for run in runs)
     return SwitchStudy(vehicle, pair, contact, V0, float(found.frequency_hz), str(found.label), switch, tuple(runs), turn, load,
-                       quasi_linear(vehicle, pair, **given), quasi_linear(vehicle, pair, load, **given), modes, others)
+                       *quasi_linear(vehicle, pair, (None, load), **given), modes, others)
 
 
 def default_pair(vehicle):
