@@ -20,7 +20,7 @@ def add_switch(commands, typed, add_vehicle, add_output):
                     "acceleration above the axleboxes, the frequency, and the speed at which the verdict turns.")
     add_vehicle(command)
     command.add_argument("--configuration", metavar="NAME", help="configuration of the vehicle file (default: its first)")
-    command.add_argument("--ratio", type=typed(numbers, "ratio"), metavar="RANGE", help="V/V0 to run: 0.85,0.9 (the default) or first:last:count")
+    command.add_argument("--ratio", type=typed(numbers, "ratio"), metavar="RANGE", help="V/V0 to run: 0.85,0.9,1 (the default) or first:last:count")
     command.add_argument("--reference", type=typed(quantity, "m/s", "reference speed"), metavar="SPEED", help="V0, such as 250km/h, in place of the linear critical speed")
     command.add_argument("--switch-amplitude", type=typed(quantity, "m", "switch amplitude"), metavar="LENGTH", help="lateral deviation of the rails (default 5mm)")
     command.add_argument("--switch-length", type=typed(quantity, "m", "switch length"), metavar="LENGTH", help="over which they deviate (default 10m)")

@@ -78,7 +78,7 @@ def _spectrum(axes, run, mode, study):
 def _same_scale(axes):
     top = max((a.get_ylim()[1] for a in axes if a.get_visible()), default=1.0)
     for panel in axes:
-        panel.set_ylim(0.0, 1.35 * top)
+        panel.set_ylim(0.0, 1.6 * top)
 
 
 def plot_quasi_linear(study, *, axes=None):

@@ -19,7 +19,7 @@ from railsym.track import Switch
 
 SWITCH = Switch(start=20.0, length=10.0, amplitude=5e-3, shape="bump")      # assumed: the geometry of the ERRI switch was not found
 AMPLITUDE = 3e-3            # m, at which equivalent conicity is quoted; so V0 is taken there
-RATIOS = (0.85, 0.90)       # V/V0 of the paper
+RATIOS = (0.85, 0.90, 1.0)  # V/V0: those of the paper, and V0
 DEEPEST = 6e-4              # m of penetration that the contact table covers: the flange strikes a rail that does not give way
 AFTER = 6.0                 # s of motion behind the switch
 
@@ -105,7 +105,7 @@ def switch_study(vehicle, pair=None, *, ratios=RATIOS, reference=None, amplitude
     pair : ContactPair, optional
         S1002 on UIC60 at 1:40, gauge 1435 mm, wheel radius of the vehicle, if not given.
     ratios : sequence of float
-        V/V0 to run.
+        V/V0 to run; those of the paper and V0 itself if not given.
     reference : float, optional
         V0, m/s; without it the linear critical speed (real part = 0) at the pair's conicity at ``amplitude``.
     amplitude : float
