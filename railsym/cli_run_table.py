@@ -9,7 +9,7 @@ from railsym.cli_output import table
 from railsym.criteria import CriterionError, derailment, instability
 from railsym.results.errors import ResultError
 
-_KINDS = (("Y/Q", "largest Y/Q, 2 m mean"), ("sum Y", "largest sum of Y, 2 m mean"), ("Q", "largest Q, 20 Hz"))
+_KINDS = (("Y/Q", "largest Y/Q, 2 m mean, 99.85 %"), ("sum Y", "largest sum of Y, 2 m mean, 99.85 %"), ("Q", "largest Q, 20 Hz, 99.85 %"))
 _ACCELERATIONS = (("car*.ay", "car body, lateral"), ("car*.az", "car body, vertical"), ("*.above_*.ay", "bogie frame above an axlebox, lateral"))
 _PLACES = (("wheelset*.y", "shift of a wheelset"),)
 
@@ -52,24 +52,28 @@ def quantities(run):
 
 def _verdicts(run):
     """Running stability in a line, or why there is none."""
+    found = _stability(run)
+    if found is not None:
+        yield f"running stability: {found[1]}"
+
+
+def _stability(run):
+    """Whether it is unstable (None: no verdict) and that in words; None without the channels."""
     if not run.channels.match("*.above_*.ay"):
-        return
+        return None
     try:
-        yield f"running stability: {instability(run).message}"
+        found = instability(run)
     except (CriterionError, ResultError) as error:
-        yield f"running stability: no verdict ({error})"
+        return None, f"no verdict ({error})"
+    if run.status != "completed" and not found.unstable:
+        return None, f"no verdict, because the run stopped; until then {found.message}"
+    return found.unstable, found.message
 
 
 def as_data(run):
     """Plain data for JSON, SI units."""
-    stable = None
-    try:
-        found = instability(run) if run.channels.match("*.above_*.ay") else None
-        stable = found and {"unstable": found.unstable, "message": found.message}
-    except (CriterionError, ResultError) as error:
-        stable = {"unstable": None, "message": str(error)}
-    info = run.info
+    stable, info = _stability(run), run.info
     return {"vehicle": info.vehicle, "configuration": info.configuration, "track": info.track, "speed": info.speed, "step": info.time_step,
             "creep_law": info.creep_law, "status": run.status, "message": run.message, "duration": float(run.time[-1]),
             "quantities": [{"what": what, "value": value, "unit": unit, "where": where, "time": time} for what, value, unit, where, time in quantities(run)],
-            "running_stability": stable}
+            "running_stability": stable and dict(zip(("unstable", "message"), stable))}

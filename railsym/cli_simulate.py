@@ -16,6 +16,7 @@ from railsym.cli_values import CommandError, quantity
 from railsym.plots.style import KMH
 
 _DURATION = 10.0     # s
+_DEEPEST = 6e-4      # m of penetration that the contact table covers: flanges strike a rail that does not give way
 _AHEAD = 5.0         # m of track beyond the end of a run, where the track is made for it
 _DRAWN = ("wheelset*.y", "*1.above_*.ay", "car*.a[yz]", "*.sum_Y")
 _FORMATS = {".nc": None, ".csv": "to_csv", ".mat": "to_mat"}
@@ -29,17 +30,19 @@ def add_simulate(commands, typed, add_vehicle, add_output):
     add_vehicle(command)
     command.add_argument("--speed", nargs="+", required=True, metavar="SPEED", help="200km/h or 55m/s")
     command.add_argument("--track", metavar="TRACK", help="name of a track that comes along or a TOML file (default: straight and level)")
-    command.add_argument("--duration", type=typed(quantity, "s", "duration"), metavar="TIME", help="such as 10s (default: to the end of --track; 10s without it)")
+    command.add_argument("--duration", type=typed(quantity, "s", "duration"), metavar="TIME",
+                         help="such as 10s (default: to the end of --track; 10s without it)")
     command.add_argument("--configuration", metavar="NAME", help="configuration of the vehicle file (default: its first)")
     add_contact(command, typed)
-    command.add_argument("--conicity", type=float, metavar="NUMBER", help="linear contact of this conicity, without wheel-rail forces, in place of profiles "
-                                                                          "(default: S1002 on UIC60, 1:40)")
+    command.add_argument("--conicity", type=float, metavar="NUMBER",
+                         help="linear contact of this conicity, without wheel-rail forces, in place of profiles (default: S1002 on UIC60, 1:40)")
     command.add_argument("--law", metavar="NAME", help="creep law on profiles (default fastsim)")
     command.add_argument("--irregularity", metavar="NAME", help="spectrum, such as erri_b176_low, or a CSV file of measured irregularities")
     command.add_argument("--seed", type=int, metavar="NUMBER", help="of --irregularity from a spectrum (default 1)")
     command.add_argument("--step", type=typed(quantity, "s", "step"), default=1e-3, metavar="TIME", help="of the integration (default 1ms)")
     command.add_argument("--rate", type=typed(quantity, "Hz", "rate"), metavar="RATE", help="samples in a second (default 200Hz)")
-    command.add_argument("--channels", nargs="+", metavar="NAME", help="channels and patterns that are drawn, and saved beside the usual ones; list shows all")
+    command.add_argument("--channels", nargs="+", metavar="NAME",
+                         help="channels and patterns that are drawn, and saved beside the usual ones; list shows all")
     command.add_argument("--save", metavar="FILE", help="save the run: .nc (written as it goes), .csv or .mat")
     command.add_argument("--animate", metavar="FILE", help="animation from above and behind: .gif, or .mp4 with ffmpeg")
     command.add_argument("--animate-range", metavar="RANGE", help="part that is animated, such as 2:4s (default: the last 2 s)")
@@ -62,14 +65,15 @@ def run(options):
         raise CommandError(f"--speed {' '.join(options.speed)}: a run has one speed")
     duration, track = duration_and_track(options, vehicle, float(speed[0]))
     contact, more, text = _contact(options, vehicle)
-    simulation = Simulation(vehicle, speed=float(speed[0]), track=track, contact=contact, dt=options.step, rate=options.rate, channels="s", **more)
+    arguments = {"speed": float(speed[0]), "track": track, "contact": contact, "dt": options.step, "rate": options.rate, **more}
+    simulation = Simulation(vehicle, channels="s", **arguments)
     if options.channels == ["list"]:
         say("\n".join(f"{name}  [{recipe.channel.unit}]  {recipe.channel.description}" for name, recipe in simulation.available.items()))
         return
-    found = _simulated(simulation, options, vehicle, duration, dict(speed=float(speed[0]), track=track, contact=contact, dt=options.step, rate=options.rate, **more))
+    found = _simulated(simulation, options, vehicle, duration, arguments)
     if options.json != "-":
-        say(f"{vehicle.name}{', ' + vehicle.configuration if vehicle.configuration else ''}: {KMH * speed[0]:.4g} km/h, track {getattr(track, 'name', 'straight')}"
-            f"{_irregular(options)}, {text}")
+        name = f"{vehicle.name}, {vehicle.configuration}" if vehicle.configuration else vehicle.name
+        say(f"{name}: {KMH * speed[0]:.4g} km/h, track {getattr(track, 'name', 'straight')}{_irregular(options)}, {text}")
         say(run_table(found))
     if options.json:
         write_json(finite(as_data(found)), options.json)
@@ -135,8 +139,8 @@ def duration_and_track(options, vehicle, speed):
         longest = options.step * (np.ceil(track.length / speed / options.step - 1e-6) - 1.0)
         duration = longest if options.duration is None else options.duration
         if duration > longest + 1e-9:
-            raise CommandError(f"track {track.name!r} is {track.length:.6g} m long, and {duration:g} s at {KMH * speed:.4g} km/h take {speed * duration:.6g} m: "
-                               f"a --duration of at most {np.floor(100.0 * longest) / 100.0:g}s fits, or a longer track")
+            raise CommandError(f"track {track.name!r} is {track.length:.6g} m long, and {duration:g} s at {KMH * speed:.4g} km/h take "
+                               f"{speed * duration:.6g} m: a --duration of at most {np.floor(100.0 * longest) / 100.0:g}s fits, or a longer track")
     return duration, _with_irregularity(track, options)
 
 
@@ -168,7 +172,7 @@ def _contact(options, vehicle):
     found = pair_contacts(options, [vehicle])
     law = options.law or "fastsim"
     more = {"law": law} | ({} if options.friction is None else {"friction": options.friction})
-    return found.pair.table(), more, f"{found.title}, {law}"
+    return found.pair.table(deepest=_DEEPEST), more, f"{found.title}, {law}"
 
 
 def _check_files(options):

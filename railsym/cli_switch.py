@@ -21,13 +21,16 @@ def add_switch(commands, typed, add_vehicle, add_output):
     add_vehicle(command)
     command.add_argument("--configuration", metavar="NAME", help="configuration of the vehicle file (default: its first)")
     command.add_argument("--ratio", type=typed(numbers, "ratio"), metavar="RANGE", help="V/V0 to run: 0.85,0.9,1 (the default) or first:last:count")
-    command.add_argument("--reference", type=typed(quantity, "m/s", "reference speed"), metavar="SPEED", help="V0, such as 250km/h, in place of the linear critical speed")
-    command.add_argument("--switch-amplitude", type=typed(quantity, "m", "switch amplitude"), metavar="LENGTH", help="lateral deviation of the rails (default 5mm)")
+    command.add_argument("--reference", type=typed(quantity, "m/s", "reference speed"), metavar="SPEED",
+                         help="V0, such as 250km/h, in place of the linear critical speed")
+    command.add_argument("--switch-amplitude", type=typed(quantity, "m", "switch amplitude"), metavar="LENGTH",
+                         help="lateral deviation of the rails (default 5mm)")
     command.add_argument("--switch-length", type=typed(quantity, "m", "switch length"), metavar="LENGTH", help="over which they deviate (default 10m)")
     command.add_argument("--switch-shape", choices=_SHAPES, help="of the deviation (default bump)")
     command.add_argument("--switch-rails", choices=_RAILS, help="which deviate (default both)")
     command.add_argument("--law", metavar="NAME", default="fastsim", help="creep law (default fastsim)")
-    command.add_argument("--after", type=typed(quantity, "s", "time after the switch"), default=6.0, metavar="TIME", help="of motion behind the switch (default 6s)")
+    command.add_argument("--after", type=typed(quantity, "s", "time after the switch"), default=6.0, metavar="TIME",
+                         help="of motion behind the switch (default 6s)")
     command.add_argument("--no-threshold", action="store_true", help="do not look for the speed at which the verdict turns")
     command.add_argument("--sensitivity", action="store_true", help="find that speed for other amplitudes, lengths and shapes of the switch too (minutes)")
     add_contact(command, typed)
@@ -49,9 +52,9 @@ def run(options):
     pair, amplitude = _pair(options, vehicle)
     switch = _switch(options)
     more = {} if options.ratio is None else {"ratios": options.ratio}
-    study = switch_study(vehicle, pair, reference=_positive(options.reference, "--reference"), amplitude=amplitude, switch=switch, threshold=not options.no_threshold,
-                         sensitivity=variants(switch) if options.sensitivity else (), law=options.law, friction=options.friction, after=options.after,
-                         progress=sys.stderr.isatty(), **more)
+    study = switch_study(vehicle, pair, reference=_positive(options.reference, "--reference"), amplitude=amplitude, switch=switch,
+                         threshold=not options.no_threshold, sensitivity=variants(switch) if options.sensitivity else (), law=options.law,
+                         friction=options.friction, after=options.after, progress=sys.stderr.isatty(), **more)
     if options.json != "-":
         say(str(study))
     if options.json:

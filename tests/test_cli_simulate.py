@@ -23,11 +23,15 @@ def test_the_table_is_that_of_the_run(capsys, tmp_path):
     status, out, err = run(capsys, *SHORT, "--irregularity", "erri_b176_low", "--save", str(target), "--plot", str(tmp_path / "run.png"))
     assert (status, err) == (0, "")
     saved = rs.Run.from_netcdf(target)
-    pair = rs.ContactPair("S1002", "UIC60", inclination=1 / 40)
-    track = rs.Track.straight(100.0).with_irregularity("erri_b176_low", seed=1)
-    expected = rs.simulate(rs.load_vehicle("pendolino").configured("AS_K"), speed=200 / 3.6, duration=1.0, track=track, contact=pair)
-    # the command makes the track as long as the run needs; the sum of cosines depends on its length, so only the start is compared: rails at rest
-    assert saved.time.shape == expected.time.shape and set(expected.channels) <= set(saved.channels)
+    vehicle = rs.load_vehicle("pendolino").configured("AS_K")
+    table = rs.ContactPair("S1002", "UIC60", inclination=1 / 40).table(deepest=6e-4)
+    # the command makes the track as long as the run needs, and 5 m
+    length = max(body.position[0] for body in vehicle.bodies) + 200 / 3.6 + 5.0
+    track = rs.Track.straight(length).with_irregularity("erri_b176_low", seed=1)
+    expected = rs.simulate(vehicle, speed=200 / 3.6, duration=1.0, track=track, contact=table)
+    assert list(saved.channels) == list(expected.channels)
+    for name in saved.channels:
+        np.testing.assert_array_equal(saved[name], expected[name])
     rows = {line[:47].strip(): line.split() for line in out.splitlines()}
     largest = max((np.abs(saved[name]).max(), name) for name in saved.channels.match("*.above_*.ay"))
     line = next(words for what, words in rows.items() if what.startswith("largest bogie frame"))
@@ -45,6 +49,18 @@ def test_json_holds_si_numbers_and_nothing_else(capsys):
     assert status == 0 and data["status"] == "completed" and data["speed"] == pytest.approx(200 / 3.6)
     assert data["creep_law"] == "linear" and data["running_stability"]["unstable"] is False
     assert {entry["unit"] for entry in data["quantities"]} == {"m/s^2", "m"}
+
+
+def test_a_run_that_stopped_is_not_called_stable():
+    from railsym.cli_run_table import as_data, run_table
+
+    time = np.arange(0.0, 3.0, 0.005)
+    name = "bogie1.above_wheelset1_left.ay"
+    for size, verdict in ((1.0, None), (9.0, True)):
+        values = {name: size * np.sin(2.0 * np.pi * 5.0 * time), "s": 50.0 * time}
+        made = rs.Run.from_arrays(time, values, {name: "m/s^2", "s": "m"}, ending=rs.results.Ending("not_converged"))
+        assert as_data(made)["running_stability"]["unstable"] is verdict
+        assert ("no verdict, because the run stopped" in run_table(made)) is (verdict is None)
 
 
 def test_a_run_too_short_for_a_verdict_says_so(capsys):
@@ -68,7 +84,8 @@ def test_track_by_name_and_to_its_end(capsys, tmp_path):
 
 def test_animation(capsys, tmp_path):
     target = tmp_path / "run.gif"
-    status, out, _ = run(capsys, *SHORT[:-1], "0.3s", "--conicity", "0.2", "--animate", str(target), "--animate-range", "0.1:0.2s", "--animate-frames", "4", "--animate-factor", "30")
+    status, out, _ = run(capsys, *SHORT[:-1], "0.3s", "--conicity", "0.2", "--animate", str(target),
+                         "--animate-range", "0.1:0.2s", "--animate-frames", "4", "--animate-factor", "30")
     assert status == 0 and "motions times 30" in out and target.read_bytes().startswith(b"GIF")
 
 

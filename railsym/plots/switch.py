@@ -68,7 +68,8 @@ def _spectrum(axes, run, mode, study):
     axes.plot(found.frequency[shown], found.amplitude[shown], color=BLUE, linewidth=1.1)
     axes.plot(run.frequency_hz, run.amplitude, "o", color=VERMILION, markersize=4.5, label=f"{run.frequency_hz:.2f} Hz")
     if mode is not None:
-        axes.axvline(mode.frequency_hz, color=GREEN, linewidth=1.1, linestyle="--", label=f"mode at {1e3 * run.mean_motion:.1f} mm: {mode.frequency_hz:.2f} Hz")
+        axes.axvline(mode.frequency_hz, color=GREEN, linewidth=1.1, linestyle="--",
+                     label=f"mode at {1e3 * run.mean_motion:.1f} mm: {mode.frequency_hz:.2f} Hz")
     axes.axvline(study.frequency_hz, color=ORANGE, linewidth=1.1, linestyle=":", label=f"mode at V0: {study.frequency_hz:.2f} Hz")
     axes.set_xlim(0.0, _HIGHEST)
     tidy(axes, ylabel="amplitude, m/s²", title="spectrum behind the switch")

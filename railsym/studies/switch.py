@@ -34,8 +34,10 @@ class SwitchStudy:
     pair : ContactPair
     contact : LinearContact
         Of the pair at the amplitude that V0 belongs to.
-    reference, frequency_hz : float
-        V0 (m/s) and the frequency of the mode that becomes unstable there (Hz).
+    reference, critical : float
+        V0, and the linear critical speed with that contact (m/s): the same unless V0 was given.
+    frequency_hz : float
+        Of the mode that becomes unstable at the linear critical speed, Hz.
     label : str
         What moves in it.
     switch : railsym.track.Switch
@@ -57,6 +59,7 @@ class SwitchStudy:
     pair: Any = field(repr=False)
     contact: Any
     reference: float
+    critical: float
     frequency_hz: float
     label: str
     switch: Switch
@@ -146,7 +149,7 @@ def switch_study(vehicle, pair=None, *, ratios=RATIOS, reference=None, amplitude
     others = tuple(_threshold_or_why(vehicle, table, other, V0, after, progress, more) for other in sensitivity)
     load, given = mean_wheel_load(vehicle), _given(friction)
     modes = tuple(hunting_mode(vehicle, pair, run.speed, run.mean_motion, load, **given) for run in runs)
-    return SwitchStudy(vehicle, pair, contact, V0, float(found.frequency_hz), str(found.label), switch, tuple(runs), turn, load,
+    return SwitchStudy(vehicle, pair, contact, V0, float(found.speed), float(found.frequency_hz), str(found.label), switch, tuple(runs), turn, load,
                        *quasi_linear(vehicle, pair, (None, load), **given), modes, others)
 
 

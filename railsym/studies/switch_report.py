@@ -15,11 +15,8 @@ WORDS = {True: "unstable", False: "stable", None: "no verdict"}
 def report(study):
     """Everything a study found, as text."""
     first = study.runs[0]
-    rule = "" if first.verdict is None else (f"; unstable: {first.verdict.required} consecutive cycles of the frame's lateral acceleration above an axlebox over "
-                                             f"{first.verdict.limit.value:g} m/s^2, {first.verdict.band[0]:g} to {first.verdict.band[1]:g} Hz")
-    lines = [heading(study) + ", over a switch" + rule, f"switch (assumed): {switch_text(study.switch)}",
-             f"V0 = {KMH * study.reference:.1f} km/h, the linear critical speed at conicity {study.contact.conicity:.3f} ({1e3 * study.contact.amplitude:g} mm): "
-             f"{study.label}, {study.frequency_hz:.2f} Hz", "", _runs(study)]
+    lines = [heading(study) + ", over a switch" + _rule(first.verdict), f"switch (assumed): {switch_text(study.switch)}", _reference(study)]
+    lines += ["", _runs(study)]
     lines += [f"{ratio_text(run.ratio)} V0: {run.run.message}" for run in study.runs if run.run.status != "completed"]
     if study.threshold is not None:
         lines += ["", f"threshold: {study.threshold.message}"]
@@ -27,6 +24,23 @@ def report(study):
     if study.sensitivity:
         lines += ["", "the threshold on other switches", _sensitivity(study)]
     return "\n".join(lines)
+
+
+def _rule(verdict):
+    if verdict is None:
+        return ""
+    return (f"; unstable: {verdict.required} consecutive cycles of the frame's lateral acceleration above an axlebox over {verdict.limit.value:g} m/s^2, "
+            f"{verdict.band[0]:g} to {verdict.band[1]:g} Hz")
+
+
+def _reference(study):
+    """V0 in words; one that was given is set beside the linear critical speed."""
+    speed = KMH * study.critical
+    text = (f"linear critical speed at conicity {study.contact.conicity:.3f} ({1e3 * study.contact.amplitude:g} mm): {study.label}, "
+            f"{study.frequency_hz:.2f} Hz")
+    if study.reference == study.critical:
+        return f"V0 = {speed:.1f} km/h, the {text}"
+    return f"V0 = {KMH * study.reference:.1f} km/h, given; {speed:.1f} km/h is the {text}"
 
 
 def ratio_text(ratio):
@@ -55,8 +69,9 @@ def _runs(study):
     rows = []
     for run, mode in zip(study.runs, study.modes):
         worst = run.worst
-        rows.append([ratio_text(run.ratio), f"{KMH * run.speed:.1f}", WORDS[run.unstable], *(("--",) * 3 if worst is None else
-                     (f"{worst.sustained:.2f}", f"{worst.peak:.2f}", f"{worst.cycles:g}")), _number(run.frequency_hz, ".2f"), _number(mode and mode.frequency_hz, ".2f"),
+        levels = ("--",) * 3 if worst is None else (f"{worst.sustained:.2f}", f"{worst.peak:.2f}", f"{worst.cycles:g}")
+        rows.append([ratio_text(run.ratio), f"{KMH * run.speed:.1f}", WORDS[run.unstable], *levels, _number(run.frequency_hz, ".2f"),
+                     _number(mode and mode.frequency_hz, ".2f"),
                      f"{_number(1e3 * run.motion, '.2f')} -> {_number(1e3 * run.late_motion, '.2f')}", run.fate])
     head = ["V/V0", "km/h", "verdict", "6 cycles, m/s^2", "peak, m/s^2", "cycles over", "frequency, Hz", "mode, Hz", "wheelset y, mm", "the motion"]
     return table(head, rows, left=(2, 9))
@@ -90,22 +105,26 @@ def as_data(study):
     runs = []
     for run, mode in zip(study.runs, study.modes):
         worst = run.worst
-        runs.append({"ratio": run.ratio, "speed": run.speed, "verdict": WORDS[run.unstable], "status": run.run.status, "message": run.run.message,
-                     "frequency_hz": _plain(run.frequency_hz), "mode_hz": mode and mode.frequency_hz, "motion": _plain(run.motion), "late_motion": _plain(run.late_motion),
-                     "fate": run.fate, "channel": worst and worst.channel, "sustained": worst and worst.sustained, "peak": worst and worst.peak,
+        runs.append({"ratio": run.ratio, "speed": run.speed, "verdict": WORDS[run.unstable], "status": run.run.status,
+                     "message": run.run.message, "frequency_hz": _plain(run.frequency_hz), "mode_hz": mode and mode.frequency_hz,
+                     "motion": _plain(run.motion), "late_motion": _plain(run.late_motion), "fate": run.fate, "channel": worst and worst.channel, "sustained": worst and worst.sustained, "peak": worst and worst.peak,
                      "cycles": worst and worst.cycles})
     return {"vehicle": study.vehicle.name, "configuration": study.vehicle.configuration, "wheel": study.pair.wheel.name, "rail": study.pair.rail.name,
             "units": {"speed": "m/s", "frequency_hz": "Hz", "sustained": "m/s^2", "peak": "m/s^2", "motion": "m", "amplitude": "m"},
             "reference": study.reference, "reference_frequency_hz": study.frequency_hz, "conicity": study.contact.conicity,
             "amplitude": study.contact.amplitude, "switch": _switch_data(study.switch), "runs": runs,
             "threshold": _threshold_data(study.threshold),
-            "wheel_load": study.load, "quasi_linear": {kind: {name: [_plain(value) for value in values] for name, values in found.items()}
-                                                       for kind, found in (("rigid", study.rigid), ("elastic", study.elastic))},
+            "critical": study.critical, "wheel_load": study.load,
+            "quasi_linear": {"rigid": _listed(study.rigid), "elastic": _listed(study.elastic)},
             "sensitivity": [{"switch": _switch_data(f[0]), "message": f[1]} if isinstance(f, tuple) else _threshold_data(f) for f in study.sensitivity]}
 
 
 def _plain(value):
     return float(value) if np.isfinite(value) else None
+
+
+def _listed(columns):
+    return {name: [_plain(value) for value in values] for name, values in columns.items()}
 
 
 def _switch_data(switch):
