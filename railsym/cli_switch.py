@@ -52,7 +52,7 @@ def run(options):
     pair, amplitude = _pair(options, vehicle)
     switch = _switch(options)
     more = {} if options.ratio is None else {"ratios": options.ratio}
-    study = switch_study(vehicle, pair, reference=_positive(options.reference, "--reference"), amplitude=amplitude, switch=switch,
+    study = switch_study(vehicle, pair, reference=_positive(options.reference, "--reference"), amplitude=amplitude, load=options.load, switch=switch,
                          threshold=not options.no_threshold, sensitivity=variants(switch) if options.sensitivity else (), law=options.law,
                          friction=options.friction, after=options.after, progress=sys.stderr.isatty(), **more)
     if options.json != "-":

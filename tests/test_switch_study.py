@@ -10,7 +10,7 @@ import railsym as rs
 from railsym.errors import SimulationError
 from railsym.studies import SWITCH, switch_study, switch_threshold, variants
 from railsym.studies import switch_threshold as threshold_function
-from railsym.studies.quasi_linear import contact_at, hunting_mode, mean_wheel_load, quasi_linear
+from railsym.studies.quasi_linear import hunting_mode, mean_wheel_load, quasi_linear
 from railsym.studies.switch import default_pair, linear_reference
 from railsym.studies.switch_run import cross, judged, switch_track
 
@@ -139,7 +139,7 @@ def test_quasi_linear_theory_at_one_amplitude_is_the_critical_speed(vehicle, pai
     # REFERENCE: conicity at 1 mm falls from 0.37 (rigid) to 0.22 (60 kN)
     assert found["conicity"][0] == pytest.approx(0.37, abs=0.01)
     assert elastic["conicity"][0] == pytest.approx(0.22, abs=0.012)
-    expected = rs.critical_speed(vehicle, contact=contact_at(pair, 1e-3, load))
+    expected = rs.critical_speed(vehicle, contact=pair.linear_contact(1e-3, load))
     assert elastic["speed"][0] == pytest.approx(float(expected.speed), rel=1e-12) and elastic["speed"][0] > found["speed"][0]
     assert hunting_mode(vehicle, pair, 60.0, 1e-6) is None
 

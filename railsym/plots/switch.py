@@ -95,8 +95,8 @@ def plot_quasi_linear(study, *, axes=None):
     matplotlib Axes
     """
     panel = new_axes(axes, size=(6.4, 3.8))[0, 0]
-    for found, colour, dashes, label in ((study.rigid, ORANGE, "--", "quasi-linear, rigid conicity"),
-                                         (study.elastic, GREEN, "-", f"quasi-linear, elastic conicity ({study.load / 1e3:.0f} kN)")):
+    for found, colour, dashes, label in ((study.rigid, ORANGE, "--", "quasi-linear, rigid contact"),
+                                         (study.elastic, GREEN, "-", f"quasi-linear, elastic contact ({study.load / 1e3:.0f} kN)")):
         panel.plot(found["speed"] / study.reference, 1e3 * found["amplitude"], color=colour, linestyle=dashes, linewidth=1.5, label=label)
     for marker, unstable, colour in (("o", False, BLUE), ("s", True, VERMILION)):
         chosen = [run for run in study.runs if run.unstable is unstable and np.isfinite(run.late_motion)]

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Hunting of a pair of profiles by the quasi-linear theory: the linear model with the contact that belongs to an amplitude.
 
-At the critical speed that belongs to an amplitude, a motion so large neither grows nor decays. The conicity is that of rigid
-profiles (EN 15302), or of elastic contact under the vehicle's wheel load, which is lower at small amplitudes, where rigid contact jumps.
+At the critical speed that belongs to an amplitude, a motion so large neither grows nor decays. The contact is that of rigid profiles
+(EN 15302), or elastic under the vehicle's wheel load: its conicity is lower at small amplitudes, where rigid contact jumps.
 """
 
 from __future__ import annotations
-
-from dataclasses import replace
 
 import numpy as np
 
@@ -26,27 +24,6 @@ def mean_wheel_load(vehicle):
     return float(np.mean(static_preload(Model(vehicle)).wheel_loads))
 
 
-def contact_at(pair, amplitude, load=None, **more):
-    """Linear contact of a pair at an amplitude (m); with a load (N) its conicity is that of elastic contact.
-
-    Raises
-    ------
-    ContactError
-        The pair has none there.
-    """
-    return _elastic(pair.linear_contact(float(amplitude), **more), pair, load)
-
-
-def _elastic(contact, pair, load):
-    """The same contact with the conicity under a load (N); itself without load."""
-    if load is None:
-        return contact
-    conicity = float(np.ravel(pair.equivalent_conicity(contact.amplitude, load=load).conicity)[0])
-    if not np.isfinite(conicity):
-        raise ContactError(f"no elastic conicity at an amplitude of {1e3 * contact.amplitude:g} mm")
-    return replace(contact, conicity=conicity)
-
-
 def quasi_linear(vehicle, pair, loads=(None,), amplitudes=AMPLITUDES, **more):
     """Critical speeds against amplitude.
 
@@ -55,7 +32,7 @@ def quasi_linear(vehicle, pair, loads=(None,), amplitudes=AMPLITUDES, **more):
     vehicle : Vehicle
     pair : ContactPair
     loads : sequence of float or None
-        N, for elastic conicity; None: conicity of rigid profiles.
+        N, for elastic contact; None: rigid profiles.
     amplitudes : array_like, shape (n,)
         m
     more
@@ -69,12 +46,11 @@ def quasi_linear(vehicle, pair, loads=(None,), amplitudes=AMPLITUDES, **more):
     rows = np.full((len(loads), len(amplitudes), 4), np.nan)
     rows[:, :, 0] = amplitudes
     for k, amplitude in enumerate(amplitudes):
-        try:
-            contact = pair.linear_contact(float(amplitude), **more)
-        except ContactError:
-            continue              # the wheel leaves the profiles, or the flange has no linear contact
         for row, load in zip(rows[:, k], loads):
-            row[1:] = _critical(vehicle, _elastic(contact, pair, load))
+            try:
+                row[1:] = _critical(vehicle, pair.linear_contact(float(amplitude), load, **more))
+            except ContactError:
+                pass              # the wheel leaves the profiles, or the flange has no linear contact
     return tuple(dict(zip(("amplitude", "conicity", "speed", "frequency_hz"), table.T)) for table in rows)
 
 
@@ -100,7 +76,7 @@ def hunting_mode(vehicle, pair, speed, amplitude, load=None, **more):
     if not amplitude > _LEAST:
         return None
     try:
-        contact = contact_at(pair, amplitude, load, **more)
+        contact = pair.linear_contact(float(amplitude), load, **more)
     except RailsymError:
         return None
     found = modes(linear_model(vehicle, contact), speed)

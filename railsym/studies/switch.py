@@ -47,8 +47,8 @@ class SwitchStudy:
     load : float
         Mean static wheel load, N.
     rigid, elastic : dict of str to ndarray (n,)
-        Critical speeds of the pair against amplitude, see `railsym.studies.quasi_linear`: conicity of rigid profiles, and of elastic contact
-        under the wheel load.
+        Critical speeds of the pair against amplitude, see `railsym.studies.quasi_linear`: rigid profiles, and elastic contact under the
+        wheel load.
     modes : tuple of Mode or None
         Of each run: the hunting mode at its speed with the elastic contact of its mean amplitude.
     sensitivity : tuple of SwitchThreshold or (Switch, str)
@@ -97,8 +97,8 @@ class SwitchStudy:
         return plot_quasi_linear(self, axes=axes)
 
 
-def switch_study(vehicle, pair=None, *, ratios=RATIOS, reference=None, amplitude=AMPLITUDE, switch=SWITCH, threshold=True, sensitivity=(), law="fastsim",
-                 grid=(20, 20), friction=None, after=AFTER, dt=1e-3, progress=False):
+def switch_study(vehicle, pair=None, *, ratios=RATIOS, reference=None, amplitude=AMPLITUDE, load=None, switch=SWITCH, threshold=True,
+                 sensitivity=(), law="fastsim", grid=(20, 20), friction=None, after=AFTER, dt=1e-3, progress=False):
     """Run a vehicle over a switch at parts of its linear critical speed V0 and judge its stability.
 
     Parameters
@@ -113,6 +113,8 @@ def switch_study(vehicle, pair=None, *, ratios=RATIOS, reference=None, amplitude
         V0, m/s; without it the linear critical speed (real part = 0) at the pair's conicity at ``amplitude``.
     amplitude : float
         m
+    load : float, optional
+        N a wheel: V0 with elastic contact; without it with rigid profiles, as conicity is quoted (EN 15302).
     switch : railsym.track.Switch
     threshold : bool
         Also find the speed at which the verdict turns.
@@ -137,7 +139,7 @@ def switch_study(vehicle, pair=None, *, ratios=RATIOS, reference=None, amplitude
     """
     pair = pair or default_pair(vehicle)
     ratios = _checked(ratios)
-    contact, found = linear_reference(vehicle, pair, amplitude, friction)
+    contact, found = linear_reference(vehicle, pair, amplitude, friction, load)
     V0 = float(found.speed) if reference is None else float(reference)
     more = {"law": law, "grid": grid, "dt": dt} | ({} if friction is None else {"friction": friction})
     table = pair.table(deepest=DEEPEST)
@@ -147,10 +149,10 @@ def switch_study(vehicle, pair=None, *, ratios=RATIOS, reference=None, amplitude
         runs.append(cross(vehicle, table, switch, turn.bracket[1] * V0, reference=V0, after=after, progress=progress, **more))
     runs.sort(key=lambda run: run.ratio)
     others = tuple(_threshold_or_why(vehicle, table, other, V0, after, progress, more) for other in sensitivity)
-    load, given = mean_wheel_load(vehicle), _given(friction)
-    modes = tuple(hunting_mode(vehicle, pair, run.speed, run.mean_motion, load, **given) for run in runs)
-    return SwitchStudy(vehicle, pair, contact, V0, float(found.speed), float(found.frequency_hz), str(found.label), switch, tuple(runs), turn, load,
-                       *quasi_linear(vehicle, pair, (None, load), **given), modes, others)
+    weight, given = mean_wheel_load(vehicle), _given(friction)
+    modes = tuple(hunting_mode(vehicle, pair, run.speed, run.mean_motion, weight, **given) for run in runs)
+    return SwitchStudy(vehicle, pair, contact, V0, float(found.speed), float(found.frequency_hz), str(found.label), switch, tuple(runs), turn, weight,
+                       *quasi_linear(vehicle, pair, (None, weight), **given), modes, others)
 
 
 def default_pair(vehicle):
@@ -163,8 +165,8 @@ def default_pair(vehicle):
     return ContactPair("S1002", "UIC60", inclination=1 / 40, gauge=1.435, wheel_radius=radii.pop())
 
 
-def linear_reference(vehicle, pair, amplitude=AMPLITUDE, friction=None):
-    """Linear contact of the pair at an amplitude (m), and the critical speed with it (CriticalSpeeds of one number).
+def linear_reference(vehicle, pair, amplitude=AMPLITUDE, friction=None, load=None):
+    """Linear contact of the pair at an amplitude (m), elastic with a load (N), and the critical speed with it (CriticalSpeeds of one number).
 
     Raises
     ------
@@ -173,7 +175,7 @@ def linear_reference(vehicle, pair, amplitude=AMPLITUDE, friction=None):
     """
     from railsym.critical_speed import critical_speed
 
-    contact = pair.linear_contact(amplitude, **_given(friction))
+    contact = pair.linear_contact(amplitude, load, **_given(friction))
     found = critical_speed(vehicle, contact=contact)
     if np.ma.getmaskarray(found.speed).any():
         raise SimulationError(f"{vehicle.name} on {pair.wheel.name}/{pair.rail.name} has no linear critical speed to serve as V0 ({found.message[0]}); "
