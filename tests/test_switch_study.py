@@ -152,8 +152,8 @@ def test_crossings_below_and_above_the_threshold(vehicle, pair):
     assert calm.fate in ("decays", "dies out") and wild.fate == "goes on"
     assert wild.motion > 5e-3 and wild.worst.cycles > 15
     mode = hunting_mode(vehicle, pair, calm.speed, calm.mean_motion, mean_wheel_load(vehicle))
-    # the quasi-linear amplitude stands for a motion that decays from 2 to 0.1 mm
-    assert calm.frequency_hz == pytest.approx(mode.frequency_hz, rel=0.12)
+    # the quasi-linear amplitude stands for a motion that decays from 2 to 0.1 mm; on 6 s 1.4 %
+    assert calm.frequency_hz == pytest.approx(mode.frequency_hz, rel=0.04)
 
 
 def test_bad_studies_are_refused(vehicle):
@@ -174,8 +174,14 @@ def test_track_and_variants():
 @pytest.mark.slow
 def test_the_paper_s_case(vehicle, tmp_path):
     """Stable at 0.85 V0 and unstable above a threshold, at the frequency of the linear mode; docs/switch_study.md."""
-    study = switch_study(vehicle, ratios=(0.85, 1.0))
-    assert [run.unstable for run in study.runs] == [False, True, True]
+    study = switch_study(vehicle, ratios=(0.85, 0.9, 1.0))
+    assert [run.unstable for run in study.runs] == [False, False, True, True]
+    # hunting on the treads: measured 0.2 and 0.5 % off the mode, 0.2 mm off the amplitude that neither grows nor decays
+    for run, mode in zip(study.runs[:2], study.modes):
+        assert run.frequency_hz == pytest.approx(mode.frequency_hz, rel=0.02)
+    treads = slice(0, 9)                                             # 0.5 to 4.5 mm, where speed rises with amplitude
+    amplitude = np.interp(0.9 * study.reference, study.elastic["speed"][treads], study.elastic["amplitude"][treads])
+    assert study.runs[1].fate == "goes on" and study.runs[1].late_motion == pytest.approx(amplitude, abs=4e-4)
     assert 0.93 < study.threshold.ratio < 1.0 and study.threshold.monotone
     limit_cycle = study.runs[-1]
     assert limit_cycle.ratio == 1.0 and limit_cycle.fate == "goes on"
