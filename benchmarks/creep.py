@@ -26,7 +26,8 @@ def creep_figures():
                       "a contact" + (", 20 x 20" if law in ("fastsim", "fastrip") else ""))
                for law, slopes, limit in (("kalker_linear", True, None), ("shen_hedrick_elkins", True, None),
                                           ("polach", True, 0.05), ("fastsim", False, 0.5), ("fastsim", True, None),
-                                          ("fastrip", False, None), ("fastrip", True, None))]
+                                          ("fastrip", False, None), ("fastrip", True, None),
+                                          ("exact", False, None), ("exact", True, 0.15))]
     return figures + _against_numba(rows, figures[3].value)
 
 

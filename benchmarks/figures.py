@@ -9,6 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
+from benchmarks.contact import contact_figures
 from benchmarks.creep import creep_figures
 from benchmarks.measure import Figure, cost_of_code, median_time, printed_by
 from benchmarks.track import track_figures
@@ -148,7 +149,8 @@ def damper_figures():
         cleaned = dampers.clean_all(tests)
         found.append(Figure(f"damper, {word}: clean", 1e3 * median_time(lambda: dampers.clean_all(tests), 5), "ms", None, "12 tests, 10 cycles, 1 kHz, 2 % noise, 3 ms lag"))
         fast, sharp = (median_time(lambda: dampers.identify(cleaned, model, method), 5) for method in ("energy", "least_squares"))
-        found.append(Figure(f"damper, {word}: energy method", 1e3 * fast, "ms", 50.0, "of cleaned tests"))
+        whole = median_time(lambda: dampers.identify(dampers.clean_all(tests), model, "energy"), 9)
+        found.append(Figure(f"damper, {word}: energy method with cleaning", 1e3 * whole, "ms", 50.0, f"of raw records; of cleaned tests {1e3 * fast:.1f} ms"))
         found.append(Figure(f"damper, {word}: least squares", sharp, "s", 2.0, "of cleaned tests, energy method included"))
     t = np.arange(200_000) * 1e-4
     e, v = 1e-3 * np.sin(6.0 * t), 6e-3 * np.cos(6.0 * t)
@@ -172,5 +174,5 @@ def _bench_records(model):
 
 
 GROUPS = {"derive": derivation, "import": imports, "linearise": linearisation, "figures": stability_figures,
-          "sensitivity": sensitivities, "creep": creep_figures, "damper": damper_figures, "track": track_figures,
+          "sensitivity": sensitivities, "creep": creep_figures, "dampers": damper_figures, "contact": contact_figures, "track": track_figures,
           "wheel_rail": wheel_rail_figures, "transient": transient_figures}

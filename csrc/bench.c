@@ -183,6 +183,7 @@ int rs_bench_cycles(const rs_law *law, int tests, int n, const double *period, c
 			continue;
 		}
 		int left = PERIODS;
+		double before = INFINITY;
 		for (; left > 0; left--) {
 			bench_state end;
 			int status = turn(law, n, h, e + row, v + row, substeps, size, s0, f + row, s + row, &end);
@@ -191,8 +192,11 @@ int rs_bench_cycles(const rs_law *law, int tests, int n, const double *period, c
 			double gap = end.s - s0;
 			if (fabs(gap) <= 1e-8 * size)
 				break;
-			/* Newton on the period map, which contracts: 0 <= z < 1. */
-			s0 += end.z >= 0.0 && end.z < 0.999 ? gap / (1.0 - end.z) : gap;
+			/* Newton on the period map, which contracts: 0 <= z < 1. Where curves have corners it may go to and fro: then
+			 * the map itself, which always comes nearer. */
+			int newton = end.z >= 0.0 && end.z < 0.999 && fabs(gap) < 0.5 * before;
+			s0 += newton ? gap / (1.0 - end.z) : gap;
+			before = newton || before == INFINITY ? fabs(gap) : INFINITY;
 		}
 		if (!left)
 			return RS_NOT_CONVERGED;

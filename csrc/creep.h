@@ -28,6 +28,7 @@ typedef struct {
 	rs_lane root;                /* sqrt(a/b) */
 	rs_lane adhesion, slip;      /* Polach's reduction factors kA, kS */
 	int strips, cells;           /* grid: strips across, cells along a strip */
+	const rs_creep_table *table; /* of the law that needs one */
 } rs_creep_input;
 
 typedef struct {
@@ -42,6 +43,7 @@ rs_creep_law rs_creep_shen_hedrick_elkins;
 rs_creep_law rs_creep_polach;
 rs_creep_law rs_creep_fastsim;
 rs_creep_law rs_creep_fastrip;
+rs_creep_law rs_creep_exact_table;
 
 /* The law of a number RS_CREEP_..., NULL where there is none. */
 rs_creep_law *rs_creep_law_at(int law);

@@ -79,7 +79,8 @@ enum {
 	RS_CREEP_SHEN_HEDRICK_ELKINS = 1,
 	RS_CREEP_POLACH = 2,
 	RS_CREEP_FASTSIM = 3,
-	RS_CREEP_FASTRIP = 4
+	RS_CREEP_FASTRIP = 4,
+	RS_CREEP_EXACT = 5
 };
 enum { RS_CREEP_INPUTS = 15 };
 
@@ -129,6 +130,15 @@ void rs_contact_table_free(rs_contact_table *table);
 int rs_contact_lookup(const rs_contact_table *table, const double *place, rs_patch *patch, int *count, int *beyond);
 int rs_contact_lookup_many(const rs_contact_table *table, int n, const double *place, rs_patch *patch, int *count,
                            int *beyond);
+
+typedef struct {
+	int pieces;                  /* of the spline, a unit of each axis of the half ball */
+	int ratio_pieces;            /* over log(a/b) */
+	double least, largest;       /* a/b */
+	const double *coefficients;  /* pieces + 2, 2 pieces + 2, ratio_pieces + 2, pieces + 2, 3, one more: creep/exact_table.c */
+} rs_creep_table;
+
+int rs_creep_forces_exact(const rs_creep_table *table, int contacts, const double *in, double *force, double *slopes);
 
 enum { RS_BAD_SPEED = 8 };
 enum { RS_CONTACT_TABLE = 0, RS_CONTACT_CONES = 1 };

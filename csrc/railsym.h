@@ -76,12 +76,44 @@
  *                       constant a, b and coefficients; or NULL: skipped
  *   Status    RS_OK, RS_BAD_INDEX (law), RS_BAD_SIZE
  *   Notes     No load or no friction: no force, no slopes. a, b, modulus, weight and coefficients must be positive;
- *             that is not checked. No allocation, no state. One law a file in csrc/creep.
+ *             that is not checked. No allocation, no state. One law a file in csrc/creep. RS_CREEP_EXACT needs a table:
+ * rs_creep_forces_exact    the same with the law RS_CREEP_EXACT
+ *   Given     table     kept by the caller; coefficients finite
+ *             contacts, in   as rs_creep_forces
+ *   Returned  force, slopes  as rs_creep_forces
+ *   Status    RS_OK, RS_BAD_SIZE (contacts, or a table without pieces or with least >= largest)
  *
  * rs_integrator_...    integration in time: contract in integrator.h; rs_travel_... track frames in motion: travel.h
- * rs_track_...         the track's frames and rails: contracts in track.h
  * rs_wheel_rail_...    wheel-rail forces in motion: contract in wheel_rail.h
  * rs_contact_cones     contact in closed form, for rs_wheel_rail_...: csrc/wheel_rail/cones.c
+ * rs_track_...         the track's frames and rails: contracts in track.h
+ *
+ * rs_rigid_contact     rigid contact of one wheel on one rail, as a right-hand side (csrc/contact/contact_table.h)
+ *   Given     from     surfaces; rail points at one step of arc, from the gauge to the field side
+ *             place    2 x n, n after n: lateral shift m, roll rad
+ *   Returned  contact  4 x n likewise: drop m at which the wheel touches, place on the wheel m, slope of the wheel there,
+ *                      1 inside both profiles and 0 at an end of one
+ *   Status    RS_OK, RS_NO_MEMORY
+ * rs_contact_table_build   a table from surfaces
+ *   Given     shape    RS_TABLE_SHAPE: start, step, nodes of the shift (m) and of the roll (rad), levels of penetration + 3,
+ *                      zones, largest normal penetration m, r0 m, place of the tape circle m
+ *             cuts     zones + 1 places on the wheel, m, from +infinity down to -infinity: where zones part
+ *             parts    zones; each interval of the shift is cut so for the nodes of that zone
+ *             modulus  contact modulus E', N/m^2
+ *   Returned  made     the table, or NULL; free with rs_contact_table_free
+ *             failures nodes whose patch could not be computed; there the table ends
+ *   Status    RS_OK, RS_BAD_SIZE, RS_NO_MEMORY
+ * rs_contact_table_of_arrays   a table from what rs_contact_table_shape and rs_contact_table_arrays gave (copied)
+ *   Status    RS_OK, RS_BAD_SIZE, RS_NO_MEMORY
+ * rs_contact_lookup    patches of one wheel
+ *   Given     table    never written to after it is made: any number of threads may read it
+ *             place    RS_PLACE_SIZE: lateral shift y m, roll rad, drop m, yaw rad, of a right-hand side
+ *   Returned  patch    RS_ZONES; only those that carry load are written, in the order of the zones
+ *             count    patches written, 0 where the wheel is in the air
+ *             beyond   where the status is RS_OUT_OF_TABLE: 0 shift, 1 roll, 2 penetration
+ *   Status    RS_OK, RS_OUT_OF_TABLE (count is 0), RS_NOT_FINITE (place)
+ *   Notes     No allocation. Values are continuous in the place with continuous slopes; slopes are those of the interpolant.
+ * rs_contact_lookup_many   the same n times; patch RS_ZONES x n; beyond n: -1 where all is well, RS_PLACE_SIZE where a place is not finite
  */
 #ifndef RAILSYM_H
 #define RAILSYM_H

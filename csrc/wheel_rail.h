@@ -16,9 +16,9 @@
  *   Given     q u      all coordinates of the model and their rates, unchanged; only those of the wheelsets are read
  *             V        m/s, speed of the track frames along their x; > 0; the creepages are slips over V
  *             w        3 n, rad/s, angular velocity of each wheelset's track frame, in its axes
- *             rail     8 n, or NULL (rails as designed): left y m, z m, dy/ds -, dz/ds -, then right: deviation of
- *                      each rail's head from its design place at the wheelset, + right and + down, and its slopes
- *                      along the track
+ *             rail     8 n, or NULL (rails as designed), as rs_track_rails_at gives it: left y, left z, right y, right z, m,
+ *                      deviation of each rail's head from its design place at the wheelset, + right and + down; then
+ *                      their derivatives d/ds along the track in this order
  *             seed     cq, cu (read only with blocks)
  *   Returned  rows     6 n, set, not added to: what the wheels add to the residual r, that is minus the generalised
  *                      forces on x y z yaw roll spin of each wheelset

@@ -315,6 +315,7 @@ CREEP_LAWS = {
     "polach": "RS_CREEP_POLACH",
     "fastsim": "RS_CREEP_FASTSIM",
     "fastrip": "RS_CREEP_FASTRIP",
+    "exact": "RS_CREEP_EXACT",
 }
 
 
@@ -341,6 +342,12 @@ def creep_forces(law, rows, grid, slopes):
         raise ContactError(f"creep forces take {lib.RS_CREEP_INPUTS} rows, got shape {rows.shape}")
     contacts = rows.shape[1]
     forces, found = np.empty((3, contacts)), np.empty((3, 6, contacts)) if slopes else None
-    _check(lib.rs_creep_forces(getattr(lib, CREEP_LAWS[law]), *grid, contacts, _doubles(rows), _doubles(forces),
-                               _doubles(found) if slopes else ffi.NULL), f"creep law {law}")
+    arrays = contacts, _doubles(rows), _doubles(forces), _doubles(found) if slopes else ffi.NULL
+    if law == "exact":
+        from railsym._core_exact import creep_table
+
+        status = lib.rs_creep_forces_exact(creep_table(), *arrays)
+    else:
+        status = lib.rs_creep_forces(getattr(lib, CREEP_LAWS[law]), *grid, *arrays)
+    _check(status, f"creep law {law}")
     return forces, found

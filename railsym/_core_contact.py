@@ -117,11 +117,19 @@ class Table:
         place = np.ascontiguousarray(place, dtype=float)
         if place.ndim != 2 or place.shape[1] != lib.RS_PLACE_SIZE:
             raise ContactError(f"places of a wheel must be (n, {lib.RS_PLACE_SIZE}): y, roll, drop, yaw; got {place.shape}")
-        n = len(place)
-        patch, count, beyond = np.zeros((n, ZONES), dtype=PATCH), np.zeros(n, dtype=np.intc), np.zeros(n, dtype=np.intc)
-        lib.rs_contact_lookup_many(self.pointer, n, _doubles(place), ffi.from_buffer("rs_patch[]", patch), ffi.from_buffer("int[]", count),
-                                   ffi.from_buffer("int[]", beyond))
+        patch, count, beyond = found = room(len(place))
+        self.lookup_into(place, *found)
         if (beyond == lib.RS_PLACE_SIZE).any():
             k = int((beyond == lib.RS_PLACE_SIZE).argmax())
             raise CoreError(f"contact table: place {k} is not finite: y, roll, drop, yaw = {place[k].tolist()}")
         return patch, count, beyond
+
+    def lookup_into(self, place, patch, count, beyond):
+        """`lookup` without checks into arrays of `room`: for loops that keep them."""
+        lib.rs_contact_lookup_many(self.pointer, len(place), _doubles(place), ffi.from_buffer("rs_patch[]", patch), ffi.from_buffer("int[]", count),
+                                   ffi.from_buffer("int[]", beyond))
+
+
+def room(count):
+    """Arrays for `Table.lookup_into` of so many places."""
+    return np.zeros((count, ZONES), dtype=PATCH), np.zeros(count, dtype=np.intc), np.zeros(count, dtype=np.intc)

@@ -34,6 +34,7 @@ def add_damper(commands):
     command.add_argument("--name", default="anti_yaw_damper", metavar="NAME", help="group of elements in that file (default anti_yaw_damper)")
     command.add_argument("--vehicle", metavar="VEHICLE", help="also show the critical speed of this vehicle with each model in the group --name")
     command.add_argument("--plot", metavar="FILE", help="draw force and stiffness over speed, and two loops: png, pdf, svg, ...")
+    command.add_argument("--map", metavar="FILE", help="draw dynamic stiffness and phase of the chosen model over frequency and amplitude")
     command.add_argument("--json", nargs="?", const="-", metavar="FILE", help="as JSON, to FILE or standard output")
     return command
 
@@ -52,6 +53,7 @@ def run(options):
     from railsym.dampers.verdict import verdict
 
     check_plot_path(options.plot)
+    check_plot_path(options.map)
     if options.write and not Path(options.write).resolve().parent.is_dir():
         raise CommandError(f"--write {options.write}: there is no directory {Path(options.write).resolve().parent}")
     records = _records(options)
@@ -66,6 +68,10 @@ def run(options):
         from railsym.plots.dampers import plot_damper
 
         save_plot(lambda: plot_damper(fits, records), options.plot)
+    if options.map:
+        from railsym.plots.damper_map import plot_damper_map
+
+        save_plot(lambda: plot_damper_map(fits[options.model].model, records=records), options.map)
     if options.write:
         damper_toml(fits[options.model].model, options.write, options.name)
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from railsym.cli_output import check_plot_path, save_plot, say, table, write_json
@@ -30,6 +32,8 @@ def add_parser(commands, typed, add_output):
     command.add_argument("--wheel-left", metavar="WHEEL", help="left wheel, where it differs")
     command.add_argument("--rail-left", metavar="RAIL", help="left rail, where it differs")
     command.add_argument("--amplitude", type=typed(lengths), metavar="RANGE", help="amplitudes: 3mm, or 2,3,4mm, or first:last:count (default 1:7:13mm)")
+    command.add_argument("--load", type=typed(quantity, "N", "load"), metavar="FORCE", help="vertical load of a wheel, such as 60kN: conicity of elastic contact too")
+    command.add_argument("--table", metavar="FILE", help="write the contact table of the pair (elastic, for simulations) as .npz")
     add_output(command)
 
     def start(options):
@@ -101,6 +105,8 @@ def run(options):
     pair = pair_of(options, wheel_radius=options.wheel_radius, wheel_radius_left=options.wheel_radius_left)
     amplitude = np.linspace(1e-3, 7e-3, 13) if options.amplitude is None else options.amplitude
     found = [pair.equivalent_conicity(amplitude, with_roll=roll) for roll in (False, True)]
+    if options.load is not None:
+        found.append(pair.equivalent_conicity(amplitude, load=options.load))
     parameters = [None if np.isnan(value) else harmonic_parameters(pair, a, value, centre)
                   for a, value, centre in zip(amplitude, found[0].conicity, found[0].centre)]
     if options.json:
@@ -109,6 +115,10 @@ def run(options):
         _show(pair, found, parameters)
     if options.plot:
         _draw(pair, found, options.plot)
+    if options.table:
+        pair.table().save(options.table)
+        if options.json != "-":
+            say(f"contact table: {options.table}")
 
 
 def pair_of(options, **measures):
@@ -143,10 +153,11 @@ def _list(options):
 def _show(pair, found, parameters):
     say(title(pair))
     rows = []
-    for k, (amplitude, without, rolling) in enumerate(zip(found[0].amplitude, found[0].conicity, found[1].conicity)):
+    for k, amplitude in enumerate(found[0].amplitude):
         rest = ["--"] * 2 if parameters[k] is None else [f"{parameters[k].contact_angle_parameter:.3f}", f"{parameters[k].roll_parameter:.4f}"]
-        rows.append([f"{1e3 * amplitude:g} mm", *("--" if np.isnan(v) else f"{v:.3f}" for v in (without, rolling)), *rest])
-    say(table(["amplitude", "conicity", "with roll", "contact-angle parameter", "roll parameter"], rows))
+        rows.append([f"{1e3 * amplitude:g} mm", *("--" if np.isnan(f.conicity[k]) else f"{f.conicity[k]:.3f}" for f in found), *rest])
+    elastic = [f"elastic, {f.load / 1e3:g} kN" for f in found if f.load is not None]
+    say(table(["amplitude", "conicity", "with roll", *elastic, "contact-angle parameter", "roll parameter"], rows))
     if found[0].message:
         say(found[0].message)
 
@@ -173,9 +184,10 @@ def _data(pair, found, parameters):
 
     return {"wheel": pair.wheel.name, "rail": pair.rail.name, "wheel_left": pair.wheel_left.name, "rail_left": pair.rail_left.name,
             "gauge": pair.track_gauge, "flange_back_distance": pair.flange_back_distance, "wheel_radius": pair.wheel_radius,
-            "wheel_radius_left": pair.wheel_radius_left, "units": {"length": "m", "wavelength": "m"},
+            "wheel_radius_left": pair.wheel_radius_left, "units": {"length": "m", "wavelength": "m", "load": "N"},
             "amplitude": listed(found[0].amplitude), "conicity": listed(found[0].conicity), "conicity_with_roll": listed(found[1].conicity),
             "wavelength": listed(found[0].wavelength), "message": found[0].message,
+            **{name: value for f in found if f.load is not None for name, value in (("conicity_elastic", listed(f.conicity)), ("load", f.load))},
             "contact_angle_parameter": [p and p.contact_angle_parameter for p in parameters],
             "roll_parameter": [p and p.roll_parameter for p in parameters]}
 
@@ -188,8 +200,8 @@ def _draw(pair, found, path):
 
     # jumps of dr make corners in the conicity: more amplitudes, from the same dr
     amplitude = np.linspace(*found[0].amplitude[[0, -1]], _DRAWN) if len(found[0].amplitude) > 1 else found[0].amplitude
-    fine = [conicity_of_difference(f.y, f.rolling_radius_difference, amplitude, pair.tape_circle_spacing, pair.mean_radius, with_roll=f.with_roll)
-            for f in found]
+    fine = [replace(conicity_of_difference(f.y, f.rolling_radius_difference, amplitude, pair.tape_circle_spacing, pair.mean_radius,
+                                           with_roll=f.with_roll), load=f.load) for f in found]
 
     def draw():
         from railsym.plots.profile_pair import plot_profile_pair

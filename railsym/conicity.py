@@ -20,7 +20,7 @@ every 0.1 mm, as in the edition of 2008, 0.058). In (2), y = (a + b)/2 + A sin t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -52,6 +52,8 @@ class Conicity:
         What it was computed from, m.
     with_roll : bool
     message : str
+    load : float or None
+        Vertical load of each wheel in elastic contact, N; None for rigid contact.
     """
 
     amplitude: np.ndarray
@@ -62,6 +64,7 @@ class Conicity:
     rolling_radius_difference: np.ndarray = field(repr=False)
     with_roll: bool = False
     message: str = ""
+    load: float | None = None
 
 
 def equivalent_conicity(pair, amplitude=3e-3, *, with_roll=False, load=None):
@@ -89,7 +92,8 @@ def equivalent_conicity(pair, amplitude=3e-3, *, with_roll=False, load=None):
     """
     amplitude = _amplitudes(amplitude)
     y, difference = _difference(pair, amplitude.max(), _sampler(pair, with_roll, load))
-    return conicity_of_difference(y, difference, amplitude, pair.tape_circle_spacing, pair.mean_radius, with_roll=with_roll)
+    found = conicity_of_difference(y, difference, amplitude, pair.tape_circle_spacing, pair.mean_radius, with_roll=with_roll)
+    return found if load is None else replace(found, load=float(load))
 
 
 def _difference(pair, amplitude, sampled):

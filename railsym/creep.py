@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Creep forces of rolling contacts: Kalker linear, Shen-Hedrick-Elkins, Polach, FASTSIM, FaStrip.
+"""Creep forces of rolling contacts: Kalker linear, Shen-Hedrick-Elkins, Polach, FASTSIM, FaStrip, exact theory.
 
     forces = creep_forces("fastsim", a, b, creepages, load, friction, Material())
 
@@ -74,7 +74,8 @@ def creep_forces(law, a, b, creepages, load, friction, material=None, *, kalker_
     Parameters
     ----------
     law : str
-        "kalker_linear" (or "kalker"), "shen_hedrick_elkins", "polach", "fastsim" or "fastrip"; see `creep_laws`.
+        "kalker_linear" (or "kalker"), "shen_hedrick_elkins", "polach", "fastsim", "fastrip" or "exact";
+        see `creep_laws`.
     a, b : float or ndarray, shape (...)
         Semi-axes along x (rolling direction) and y (lateral), m.
     creepages : array_like, shape (..., 3)

@@ -202,7 +202,7 @@ class WheelRail:
         w : array_like, shape (wheelsets, 3), optional
             Angular velocities of the track frames, rad/s.
         rail : array_like, shape (wheelsets, 8), optional
-            Left y m, z m, dy/ds, dz/ds, then right.
+            Left y, left z, right y, right z of the rails, m, then their derivatives d/ds in this order.
         seed : pair of float, optional
             (cq, cu).
 

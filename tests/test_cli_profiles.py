@@ -50,3 +50,13 @@ def test_a_rail_as_it_lies_needs_neither_gauge_nor_inclination(capsys):
 def test_errors_are_one_line_with_status_2(capsys, arguments, expected):
     status, out, err = run(capsys, "profiles", *arguments)
     assert status == 2 and out == "" and expected in err and len(err.strip().splitlines()) == 1
+
+
+def test_elastic_conicity_and_the_table(capsys, tmp_path):
+    path = tmp_path / "pair.npz"
+    status, out, err = run(capsys, *PAIR, "--inclination", "1:40", "--load", "60kN", "--table", str(path))
+    expected = rs.ContactPair("S1002", "UIC60", inclination=1 / 40).equivalent_conicity(3e-3, load=60e3).conicity[0]
+    assert (status, err) == (0, "") and "elastic, 60 kN" in out and f"{expected:.3f}" in out
+    assert rs.load_contact_table(path).right.lookup([0.0], drop=3e-4).load[0, 0] > 1e4
+    status, out, err = run(capsys, *PAIR, "--load", "60mm")
+    assert status == 2 and "load" in err

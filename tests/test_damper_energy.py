@@ -6,8 +6,11 @@ import pytest
 
 from railsym.dampers import energy
 from railsym.dampers.cleaning import clean_all
+from railsym.dampers.elongation import lag_by_elongation, refined_elongation, split_elongation
 from railsym.dampers.fit import identify
+from railsym.dampers.reading import read_records
 from railsym.dampers.record import Record
+from tests.oracles.bench_campaign import ClosedDamper, campaign, random_bench
 from tests.test_damper_fit import linear_records
 
 TESTS = [(f, a) for f in (0.5, 1.0, 2.0, 3.0) for a in (0.5e-3, 1e-3, 2e-3)]
@@ -69,12 +72,31 @@ def test_dissipated_energy_of_a_known_speed():
     assert energy.dissipated(loops, noisy) == pytest.approx(3e5, rel=0.005)
 
 
-def test_stored_energy_is_that_of_the_spring():
+@pytest.mark.parametrize("levels", [None, np.array([0.0, 1e5])])
+def test_stored_energy_is_that_of_the_spring(levels):
     loops = energy.loops_of(linear_records(3e5, 5e6))
-    for linear in (True, False):
-        compliance, misfit = energy.stored(loops, linear=linear)
-        assert compliance[0] == pytest.approx(1 / 5e6, rel=1e-4)
-        assert misfit < 1e-4
+    found = split_elongation(loops, levels=levels)
+    # the corners of R at levels of force cost 1e-4
+    assert found.compliance[0] == pytest.approx(1 / 5e6, rel=3e-4)
+    assert np.interp(3000.0, found.force, found.speed) == pytest.approx(0.01, rel=1e-3)
+    assert found.misfit < 1e-4
+
+
+def test_curve_and_lag_by_the_elongation():
+    """A record of the second generator: friction and blow-off, constant stiffness, no noise."""
+    random = np.random.default_rng(3)
+    tests = [(f, a) for f in (0.5, 1.5, 4.0) for a in (0.5e-3, 1e-3, 3e-3)]
+    damper = ClosedDamper(5e5, 6e6, "friction and blow-off", bend=0.02, dry=1500.0, stick=1e-3)
+    made = campaign(damper, tests, random_bench(random, tests, 0.0, 3, lag=-2e-3, rate=2000.0, jitter=0.0))
+    loops = energy.loops_of(clean_all(read_records(made.records, units=made.units)))
+    lag = lag_by_elongation(loops)
+    assert lag == pytest.approx(-2e-3, abs=1e-4)
+    found = refined_elongation(loops.shifted(lag))
+    assert found.compliance[0] == pytest.approx(1.0 / 6e6, rel=0.01)
+    speed = np.linspace(0.0, made.fastest[1], 101)
+    wanted = damper.force(speed)
+    # 24 levels of force: a corner between two of them costs some 3 % of the peak
+    assert np.abs(np.interp(speed, found.speed, found.force) - wanted).max() < 0.05 * wanted.max()
 
 
 def random_cases(count=24, seed=11):

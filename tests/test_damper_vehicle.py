@@ -43,6 +43,13 @@ def test_table_of_critical_speeds():
     assert np.isfinite(found.as_data()["speed"]["as in the file"][0])
 
 
+def test_a_model_without_a_critical_speed_takes_the_frequency_of_the_files_damper():
+    stiff = DamperModel("viscous", damping_curve=((0.0, 0.001, 0.03), (0.0, 3e3, 6e3)))
+    found = critical_speeds("pendolino", {"viscous": stiff}, conicity=(0.1,), amplitudes=(3e-3,))
+    assert np.ma.is_masked(found.speed[1, 0]) and not np.ma.is_masked(found.speed[0, 0])
+    assert found.rows[2] == f"viscous, 3 mm at {found.frequency_hz[0, 0]:.1f} Hz" and found.speed[2, 0] > 10.0
+
+
 def test_shipped_records_and_the_virtual_bench_agree():
     """Two integrators of one equation: SciPy's Radau in the generator, the vehicle's element law in C."""
     from railsym.dampers import clean, read_records, shipped_records

@@ -276,7 +276,7 @@ def test_damping_of_the_load():
         loads.append(forces.outputs().load[0, 0])
     np.testing.assert_allclose(loads, [0.0, 0.0, 6e4 * (1 - 0.4 * chi), 6e4, 6e4 * (1 + 0.2 * chi)], rtol=1e-12, atol=1e-9)
     # Rails that rise at 20 mm/s are a wheelset that sinks. On a climb of c it is also nearer to its rail by r0 c^2/2, 0.08 of 77 um.
-    forces.rows(REST, rolling(), SPEED, rail=[[0, 0, 0, -0.02 / SPEED] * 2])
+    forces.rows(REST, rolling(), SPEED, rail=[0, 0, 0, 0, 0, -0.02 / SPEED, 0, -0.02 / SPEED])
     assert forces.outputs().load[0, 0] == pytest.approx(6e4 * (1 + 0.02 * chi), rel=2e-3)
 
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from oracles.wheel_rail_cases import R0, SPEED, TREAD_ONLY, random_state, rolling, rows_of, wheelset
+from oracles.wheel_rail_cases import R0, SPEED, TREAD_ONLY, lie, random_state, rolling, rows_of, wheelset
 from oracles.wheel_rail_motion import State
 
 import railsym as rs
@@ -113,7 +113,7 @@ def test_wheelsets_are_independent_of_each_other():
     rng = np.random.default_rng(432)
     states = [random_state(rng) for _ in places]
     q, u = (np.concatenate([getattr(s, key) for s in states]) for key in "qu")
-    rows, blocks = together.rows(q, u, SPEED, [s.w for s in states], [s.rails.ravel() for s in states], (1.0, 2.0))
+    rows, blocks = together.rows(q, u, SPEED, [s.w for s in states], [lie(s.rails) for s in states], (1.0, 2.0))
     for k, state in enumerate(states):
         alone = WheelRail(places[:1], TREAD_ONLY, law="fastsim", wheel_loads=6e4, friction=np.linspace(0.1, 0.5, 10)[2 * k:2 * k + 2])
         own, own_blocks = rows_of(alone, state, (1.0, 2.0))
@@ -130,6 +130,27 @@ def test_left_and_right_may_differ():
     np.testing.assert_allclose(np.tan(found.angle[:, 0]), [0.1, 0.2], rtol=1e-3)
     np.testing.assert_allclose(np.linalg.norm(found.force[:, 0, :2], axis=1) / found.load[:, 0], [0.1, 0.4], rtol=0.1)
     assert found.load[1, 0] > 1.3 * found.load[0, 0]
+
+
+def test_rails_come_in_the_order_of_the_track():
+    """A track whose rails lie askew gives what the wheels take: each wheel's own rail, places before slopes."""
+    from railsym.track import Track
+
+    track = Track.straight(200.0).with_irregularity("erri_b176_low", seed=3)
+    rails = 0.05 * track.core.rails(np.array([100.0]))[0]  # vertically some tenths of the penetration
+    forces, q = wheelset(friction=0.0), np.zeros(6)
+    q[1] = 0.5 * (rails[0] + rails[2])
+    found = []
+    for lies in (rails, rails * [1, 1, 1, 1, 0, 0, 0, 0]):
+        forces.rows(q, rolling(), SPEED, rail=lies)
+        found.append(forces.outputs().load[:, 0])
+    by_hand = []
+    for side, (y, z) in ((0, rails[:2]), (1, rails[2:4])):
+        forces.rows([0, q[1] - y, -z, 0, 0, 0], rolling(), SPEED)
+        by_hand.append(forces.outputs().load[side, 0])
+    # what the rails' own turning and heading change is below a tenth of what their places do
+    np.testing.assert_allclose(found[1], by_hand, rtol=0.02)
+    assert np.ptp(found[1]) > 100.0
 
 
 # --- errors -----------------------------------------------------------------------------------------------------

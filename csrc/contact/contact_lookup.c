@@ -7,103 +7,105 @@
 #include <math.h>
 #include <string.h>
 
-#include "../dispatch.h"
-#include "contact_table.h"
+#include "rows.h"
 
+#define INLINE RS_INLINED
 #define LEAST_TAU 1e-6 /* less is no contact: the load is below 1e-18 of that at the deepest level */
-
-#if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline))
-#else
-#define INLINE static inline
-#endif
 
 typedef struct {
 	int node;                        /* first of four */
-	double w[4], d[4], dd[4];        /* weights of value, slope, second slope */
+	double w[4], d[4];               /* weights of value and slope */
 } cell;
 
 /* Weights of a cubic through nodes 1 and 2 whose slopes there are the central differences. */
 INLINE void weigh(double t, double inverse_step, cell *c)
 {
-	double s = t * t, q = inverse_step, qq = q * q;
+	double s = t * t, half = 0.5 * inverse_step;
 	c->w[0] = t * (-0.5 + t * (1.0 - 0.5 * t));
 	c->w[1] = 1.0 + s * (-2.5 + 1.5 * t);
 	c->w[2] = t * (0.5 + t * (2.0 - 1.5 * t));
 	c->w[3] = s * (-0.5 + 0.5 * t);
-	c->d[0] = q * (-0.5 + t * (2.0 - 1.5 * t));
-	c->d[1] = q * t * (-5.0 + 4.5 * t);
-	c->d[2] = q * (0.5 + t * (4.0 - 4.5 * t));
-	c->d[3] = q * t * (-1.0 + 1.5 * t);
-	c->dd[0] = qq * (2.0 - 3.0 * t);
-	c->dd[1] = qq * (-5.0 + 9.0 * t);
-	c->dd[2] = qq * (4.0 - 9.0 * t);
-	c->dd[3] = qq * (-1.0 + 3.0 * t);
+	c->d[0] = half * (-1.0 + t * (4.0 - 3.0 * t));
+	c->d[1] = half * t * (-10.0 + 9.0 * t);
+	c->d[2] = half * (1.0 + t * (8.0 - 9.0 * t));
+	c->d[3] = half * t * (-2.0 + 3.0 * t);
 }
 
-/* 0 where x is outside the range that may be read. */
-INLINE int locate(const rs_axis *axis, double x, cell *c)
+/* Where x lies on an axis, in nodes; 0 where it is outside the range that may be read. */
+INLINE int locate(const rs_axis *axis, double x, cell *c, double *t)
 {
-	double inverse = 1.0 / axis->step, t = (x - axis->start) * inverse;
-	if (!(t >= 1.0 && t <= axis->count - 2))
+	double inverse = 1.0 / axis->step, place = (x - axis->start) * inverse;
+	if (!(place >= 1.0 && place <= axis->count - 2))
 		return 0;
-	int k = (int)t;
+	int k = (int)place;
 	k = k > axis->count - 3 ? axis->count - 3 : k;
 	c->node = k - 1;
-	weigh(t - k, inverse, c);
+	*t = place - k;
+	weigh(*t, inverse, c);
 	return 1;
+}
+
+INLINE void weigh_twice(double t, double inverse_step, double *dd)
+{
+	double qq = inverse_step * inverse_step;
+	dd[0] = qq * (2.0 - 3.0 * t);
+	dd[1] = qq * (-5.0 + 9.0 * t);
+	dd[2] = qq * (4.0 - 9.0 * t);
+	dd[3] = qq * (-1.0 + 3.0 * t);
 }
 
 enum { VALUE, BY_SHIFT, BY_ROLL, TWICE_BY_SHIFT, BY_BOTH, CLOSURES }; /* of c, s, r, Y' */
 enum { BY_TAU = 3, FIELD_SLOPES };                                     /* of the fields, after the first three */
 
-INLINE void read_closure(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, double out[CLOSURES][RS_CLOSURE])
+INLINE void read_closure(const rs_contact_table *t, int zone, const cell *shift, const double *twice, const cell *roll, half_row *out)
 {
-	const double *first = t->zone[zone].closure + ((size_t)shift->node * (size_t)t->roll.count + (size_t)roll->node) * RS_CLOSURE;
-	memset(out, 0, CLOSURES * sizeof out[0]);
+	const half_row *first = (const half_row *)t->zone[zone].closure + (size_t)shift->node * (size_t)t->roll.count + (size_t)roll->node;
+	memset(out, 0, CLOSURES * sizeof *out);
 	for (int i = 0; i < 4; i++) {
-		const double *node = first + (size_t)i * (size_t)t->roll.count * RS_CLOSURE;
-		for (int f = 0; f < RS_CLOSURE; f++) {
-			double value = 0.0, by_roll = 0.0;
-			for (int j = 0; j < 4; j++) {
-				value += roll->w[j] * node[j * RS_CLOSURE + f];
-				by_roll += roll->d[j] * node[j * RS_CLOSURE + f];
-			}
-			out[VALUE][f] += shift->w[i] * value;
-			out[BY_SHIFT][f] += shift->d[i] * value;
-			out[BY_ROLL][f] += shift->w[i] * by_roll;
-			out[TWICE_BY_SHIFT][f] += shift->dd[i] * value;
-			out[BY_BOTH][f] += shift->d[i] * by_roll;
+		const half_row *node = first + (size_t)i * (size_t)t->roll.count;
+		half_row value = {0}, by_roll = {0};
+		for (int j = 0; j < 4; j++) {
+			ADD_SCALED(value, roll->w[j], node[j]);
+			ADD_SCALED(by_roll, roll->d[j], node[j]);
 		}
+		ADD_SCALED(out[VALUE], shift->w[i], value);
+		ADD_SCALED(out[BY_SHIFT], shift->d[i], value);
+		ADD_SCALED(out[BY_ROLL], shift->w[i], by_roll);
+		ADD_SCALED(out[TWICE_BY_SHIFT], twice[i], value);
+		ADD_SCALED(out[BY_BOTH], shift->d[i], by_roll);
 	}
 }
 
-INLINE void read_field(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const cell *level,
-                       double out[FIELD_SLOPES][RS_FIELDS])
+/* Level by level over shift and roll for the value and its slope over tau; node by node over the levels for the other slopes. */
+INLINE void read_field(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const cell *level, row *out)
 {
-	size_t along = (size_t)t->levels * RS_FIELDS;
-	const double *first = t->zone[zone].field + ((size_t)shift->node * (size_t)t->roll.count + (size_t)roll->node) * along +
-	                      (size_t)level->node * RS_FIELDS;
-	memset(out, 0, FIELD_SLOPES * sizeof out[0]);
+	size_t along = (size_t)t->levels, across = along * (size_t)t->roll.count;
+	const row *first = (const row *)t->zone[zone].field + (size_t)shift->node * across + (size_t)roll->node * along + (size_t)level->node;
+	row at[4] = {{0}}, by_shift = {0}, by_roll = {0};
 	for (int i = 0; i < 4; i++) {
-		double value[RS_FIELDS] = {0}, by_roll[RS_FIELDS] = {0}, by_tau[RS_FIELDS] = {0};
+		row value = {0};
 		for (int j = 0; j < 4; j++) {
-			const double *node = first + ((size_t)i * (size_t)t->roll.count + (size_t)j) * along;
-			for (int f = 0; f < RS_FIELDS; f++) {
-				double a = node[f], b = node[RS_FIELDS + f], c = node[2 * RS_FIELDS + f], d = node[3 * RS_FIELDS + f];
-				double here = level->w[0] * a + level->w[1] * b + level->w[2] * c + level->w[3] * d;
-				value[f] += roll->w[j] * here;
-				by_roll[f] += roll->d[j] * here;
-				by_tau[f] += roll->w[j] * (level->d[0] * a + level->d[1] * b + level->d[2] * c + level->d[3] * d);
+			const row *node = first + (size_t)i * across + (size_t)j * along;
+			double weight = shift->w[i] * roll->w[j];
+			row here = {0};
+			for (int k = 0; k < 4; k++) {
+				ADD_SCALED(here, level->w[k], node[k]);
+				ADD_SCALED(at[k], weight, node[k]);
 			}
+			ADD_SCALED(value, roll->w[j], here);
+			ADD_SCALED(by_roll, shift->w[i] * roll->d[j], here);
 		}
-		for (int f = 0; f < RS_FIELDS; f++) {
-			out[VALUE][f] += shift->w[i] * value[f];
-			out[BY_SHIFT][f] += shift->d[i] * value[f];
-			out[BY_ROLL][f] += shift->w[i] * by_roll[f];
-			out[BY_TAU][f] += shift->w[i] * by_tau[f];
-		}
+		ADD_SCALED(by_shift, shift->d[i], value);
 	}
+	row value = {0}, by_tau = {0};
+	for (int k = 0; k < 4; k++) {
+		ADD_SCALED(value, level->w[k], at[k]);
+		ADD_SCALED(by_tau, level->d[k], at[k]);
+	}
+	out[VALUE] = value;
+	out[BY_SHIFT] = by_shift;
+	out[BY_ROLL] = by_roll;
+	out[BY_TAU] = by_tau;
 }
 
 /* A number with its slopes over (eta, roll at constant eta, drop, yaw). */
@@ -112,7 +114,7 @@ typedef struct {
 } slopes;
 
 /* Normal penetration p of a zone: s P, P = drop - c + yaw^2/2 t (r t - Y'), t = -dc/d(eta). */
-INLINE slopes penetration(const double c[CLOSURES][RS_CLOSURE], double drop, double yaw)
+INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw)
 {
 	double t = -c[BY_SHIFT][0], r = c[VALUE][2], half = 0.5 * yaw * yaw, arm = r * t - c[VALUE][3], s = c[VALUE][1];
 	double P = drop - c[VALUE][0] + half * t * arm, by[2];
@@ -123,31 +125,35 @@ INLINE slopes penetration(const double c[CLOSURES][RS_CLOSURE], double drop, dou
 	return (slopes){s * P, {by[0], by[1], s, s * yaw * t * arm}};
 }
 
-/* factor(p) F with its slopes, changed to (y, roll, drop, yaw): d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
-INLINE void put(const double f[FIELD_SLOPES][RS_FIELDS], int field, const slopes *tau, const slopes *p, double factor, double factor_slope,
-                double radius, double *to)
+/* Values of all fields with their slopes over (y, roll, drop, yaw), load and semi-axes with their power of p: column 0 of out,
+ * then 1 to 4. d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
+INLINE void chain(const double (*f)[RS_FIELDS], const slopes *tau, const slopes *p, double root, double radius, double (*out)[RS_FIELDS])
 {
-	double value = f[VALUE][field], d[4];
-	for (int k = 0; k < 4; k++)
-		d[k] = factor * f[BY_TAU][field] * tau->d[k] + factor_slope * value * p->d[k];
-	d[0] += factor * f[BY_SHIFT][field];
-	d[1] += factor * f[BY_ROLL][field];
-	to[0] = factor * value;
-	to[1] = d[0];
-	to[2] = d[1] - radius * d[0];
-	to[3] = d[2];
-	to[4] = d[3];
+	const double power[RS_FIELDS] = {p->v * root, 1.0, 1.0, 1.0, root, root, 1.0};
+	const double slope[RS_FIELDS] = {1.5 * root, 0.0, 0.0, 0.0, 0.5 / root, 0.5 / root};
+	for (int k = 0; k < RS_FIELDS; k++) {
+		double by_tau = power[k] * f[BY_TAU][k], by_p = slope[k] * f[VALUE][k];
+		out[0][k] = power[k] * f[VALUE][k];
+		out[1][k] = power[k] * f[BY_SHIFT][k] + tau->d[0] * by_tau + p->d[0] * by_p;
+		out[2][k] = power[k] * f[BY_ROLL][k] + tau->d[1] * by_tau + p->d[1] * by_p - radius * out[1][k];
+		out[3][k] = tau->d[2] * by_tau + p->d[2] * by_p;
+		out[4][k] = tau->d[3] * by_tau + p->d[3] * by_p;
+	}
 }
 
-/* The contact of a yawed wheel: ahead by r t psi, inward by r t psi^2, below by r t^2 psi^2/2 (t = tan of the slope to the axle). */
-INLINE void turn(double yaw, const double *slope_angle, rs_patch *patch)
+INLINE void take(const double (*from)[RS_FIELDS], int field, double *to)
 {
-	double t = tan(slope_angle[0]), t_angle = 1.0 + t * t, r = patch->radius[0], square = yaw * yaw;
-	double arm = r * t, arm_slope[5], half = 0.5 * arm * t, half_slope[5];
+	for (int k = 0; k < 5; k++)
+		to[k] = from[k][field];
+}
+
+/* The contact of a yawed wheel: ahead by r t psi, inward by r t psi^2, below by r t^2 psi^2/2 (t: tangent of its slope to the axle). */
+INLINE void turn(double yaw, const double *tangent, rs_patch *patch)
+{
+	double t = tangent[0], r = patch->radius[0], square = yaw * yaw, arm = r * t, half = 0.5 * arm * t, arm_slope[5], half_slope[5];
 	for (int k = 1; k < 5; k++) {
-		double dt = t_angle * slope_angle[k], dr = patch->radius[k];
-		arm_slope[k] = dr * t + r * dt;
-		half_slope[k] = 0.5 * (arm_slope[k] * t + arm * dt);
+		arm_slope[k] = patch->radius[k] * t + r * tangent[k];
+		half_slope[k] = 0.5 * (arm_slope[k] * t + arm * tangent[k]);
 	}
 	patch->x[0] = arm * yaw;
 	patch->across[0] -= arm * square;
@@ -165,7 +171,9 @@ INLINE void turn(double yaw, const double *slope_angle, rs_patch *patch)
 INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const slopes *p, const double *place,
                        rs_patch *patch)
 {
-	double root = sqrt(p->v), deepest = sqrt(t->deepest), field[FIELD_SLOPES][RS_FIELDS], r0 = t->wheel_radius;
+	double root = sqrt(p->v), deepest = sqrt(t->deepest), r0 = t->wheel_radius;
+	row rows[FIELD_SLOPES];
+	double out[5][RS_FIELDS], tangent[5];
 	slopes tau = {root / deepest, {0.0}};
 	for (int k = 0; k < 4; k++)
 		tau.d[k] = p->d[k] / (2.0 * deepest * root);
@@ -173,14 +181,16 @@ INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, c
 	cell level;
 	level.node = k < parts ? k : parts - 1;
 	weigh(tau.v * parts - level.node, parts, &level);
-	read_field(t, zone, shift, roll, &level, field);
-	put(field, RS_STIFFNESS, &tau, p, p->v * root, 1.5 * root, r0, patch->load);
-	put(field, RS_ACROSS, &tau, p, 1.0, 0.0, r0, patch->across);
-	put(field, RS_RADIUS, &tau, p, 1.0, 0.0, r0, patch->radius);
-	put(field, RS_ANGLE, &tau, p, 1.0, 0.0, r0, patch->angle);
-	put(field, RS_LENGTH, &tau, p, root, 0.5 / root, r0, patch->a);
-	put(field, RS_WIDTH, &tau, p, root, 0.5 / root, r0, patch->b);
-	turn(place[3], patch->angle, patch);
+	read_field(t, zone, shift, roll, &level, rows);
+	chain((const double (*)[RS_FIELDS])rows, &tau, p, root, r0, out);
+	take((const double (*)[RS_FIELDS])out, RS_STIFFNESS, patch->load);
+	take((const double (*)[RS_FIELDS])out, RS_ACROSS, patch->across);
+	take((const double (*)[RS_FIELDS])out, RS_RADIUS, patch->radius);
+	take((const double (*)[RS_FIELDS])out, RS_ANGLE, patch->angle);
+	take((const double (*)[RS_FIELDS])out, RS_LENGTH, patch->a);
+	take((const double (*)[RS_FIELDS])out, RS_WIDTH, patch->b);
+	take((const double (*)[RS_FIELDS])out, RS_TANGENT, tangent);
+	turn(place[3], tangent, patch);
 	patch->angle[0] -= place[1];
 	patch->angle[2] -= 1.0;
 	patch->zone = zone;
@@ -195,22 +205,25 @@ static int refuse(int which, int *beyond)
 RS_CLONES int rs_contact_lookup(const rs_contact_table *t, const double *place, rs_patch *patch, int *count, int *beyond)
 {
 	cell shift[RS_ZONES], roll;
+	double at, twice[4];
 	slopes p[RS_ZONES];
 	double eta = place[0] - t->wheel_radius * place[1];
 	*count = 0;
 	if (!isfinite(place[0] + place[1] + place[2] + place[3]))
 		return RS_NOT_FINITE;
-	if (!locate(&t->roll, place[1], &roll))
+	if (!locate(&t->roll, place[1], &roll, &at))
 		return refuse(1, beyond);
-	if (!locate(&t->shift, eta, &shift[0]))
+	at = (eta - t->shift.start) / t->shift.step;
+	if (!(at >= 1.0 && at <= t->shift.count - 2))
 		return refuse(0, beyond);
 	for (int z = 0; z < t->zones; z++) {
-		double closure[CLOSURES][RS_CLOSURE];
+		half_row closure[CLOSURES];
 		p[z].v = 0.0;
-		if (!locate(&t->zone[z].shift, eta, &shift[z]))
+		if (!locate(&t->zone[z].shift, eta, &shift[z], &at))
 			continue; /* the zone cannot touch here */
-		read_closure(t, z, &shift[z], &roll, closure);
-		p[z] = penetration(closure, place[2], place[3]);
+		weigh_twice(at, 1.0 / t->zone[z].shift.step, twice);
+		read_closure(t, z, &shift[z], twice, &roll, closure);
+		p[z] = penetration((const double (*)[RS_CLOSURE])closure, place[2], place[3]);
 		if (!(p[z].v <= t->deepest))
 			return refuse(2, beyond);
 	}

@@ -16,7 +16,7 @@ _Static_assert(SLIP + 1 == RS_CREEP_INPUTS, "rows of rs_creep_forces");
 #define LARGEST_U 1e9               /* beyond it contacts slip fully to 1 in 1e9: u is scaled back to it */
 
 static rs_creep_law *const LAWS[] = {rs_creep_kalker_linear, rs_creep_shen_hedrick_elkins, rs_creep_polach,
-                                     rs_creep_fastsim, rs_creep_fastrip};
+                                     rs_creep_fastsim, rs_creep_fastrip, rs_creep_exact_table};
 
 typedef struct {
 	rs_lane in[RS_CREEP_INPUTS];
@@ -113,23 +113,37 @@ RS_CLONES static void one_batch(int law, int slopes, batch *b, rs_creep_input *i
 	scale(b, input, &value, slopes, force, slope);
 }
 
-int rs_creep_forces(int law, int strips, int cells, int contacts, const double *in, double *force, double *slopes)
+static void all_batches(int law, rs_creep_input *input, int contacts, const double *in, double *force, double *slopes)
 {
-	if (law < 0 || law >= (int)(sizeof LAWS / sizeof *LAWS))
-		return RS_BAD_INDEX;
-	if (contacts < 0 || strips < 1 || cells < 1)
-		return RS_BAD_SIZE;
-	rs_creep_input input = {.strips = strips, .cells = cells};
 	for (int first = 0; first < contacts; first += RS_LANES) {
 		int count = contacts - first < RS_LANES ? contacts - first : RS_LANES;
 		batch b;
 		rs_lane lanes_force[3], lanes_slope[18];
 		gather(in, contacts, first, count, &b);
-		one_batch(law, slopes != NULL, &b, &input, lanes_force, lanes_slope);
+		one_batch(law, slopes != NULL, &b, input, lanes_force, lanes_slope);
 		scatter(lanes_force, 3, contacts, first, count, force);
 		if (slopes)
 			scatter(lanes_slope, 18, contacts, first, count, slopes);
 	}
+}
+
+int rs_creep_forces(int law, int strips, int cells, int contacts, const double *in, double *force, double *slopes)
+{
+	if (law < 0 || law >= (int)(sizeof LAWS / sizeof *LAWS) || law == RS_CREEP_EXACT)
+		return RS_BAD_INDEX;
+	if (contacts < 0 || strips < 1 || cells < 1)
+		return RS_BAD_SIZE;
+	rs_creep_input input = {.strips = strips, .cells = cells};
+	all_batches(law, &input, contacts, in, force, slopes);
+	return RS_OK;
+}
+
+int rs_creep_forces_exact(const rs_creep_table *table, int contacts, const double *in, double *force, double *slopes)
+{
+	if (contacts < 0 || table->pieces < 1 || table->ratio_pieces < 1 || !(table->least > 0.0 && table->largest > table->least))
+		return RS_BAD_SIZE;
+	rs_creep_input input = {.table = table};
+	all_batches(RS_CREEP_EXACT, &input, contacts, in, force, slopes);
 	return RS_OK;
 }
 

@@ -12,6 +12,7 @@
  *   f ~ axle x e3    d = f x axle
  *   dD/dt = (0, y' - V rail y', z' - V rail z') of the place;    v = V ex + w x (place) + q' of the material
  *
+ * rail: left y z, right y z, then their derivatives d/ds (rs_track_rails_at).
  * The material of the rail rests, so its deviation moves the place of the contact and not the slip.
  */
 #include <math.h>
@@ -88,19 +89,19 @@ RS_INLINE void axle_tangents(const double *u, const double *w, const double *see
 RS_INLINE void rail_axes(const rs_wheelset *set, const double *q, double V, const double *rail, rs_wheel_state *wheel,
                       rail_head *head)
 {
-	const double *own = rail + (wheel->side > 0.0 ? 4 : 0);
-	double level = sqrt(1.0 + own[2] * own[2]), length = sqrt(level * level + own[3] * own[3]);
-	double h[3] = {-own[2] / level, 1.0 / level, 0.0}, k[3], spacing = set->spacing;
-	double sine = (rail[5] - rail[1]) / spacing, cosine = sqrt(1.0 - sine * sine);
+	const double *own = rail + (wheel->side > 0.0 ? 2 : 0), *slope = own + 4;
+	double level = sqrt(1.0 + slope[0] * slope[0]), length = sqrt(level * level + slope[1] * slope[1]);
+	double h[3] = {-slope[0] / level, 1.0 / level, 0.0}, k[3], spacing = set->spacing;
+	double sine = (rail[3] - rail[1]) / spacing, cosine = sqrt(1.0 - sine * sine);
 	head->e1[0] = 1.0 / length;
-	head->e1[1] = own[2] / length;
-	head->e1[2] = own[3] / length;
+	head->e1[1] = slope[0] / length;
+	head->e1[2] = slope[1] / length;
 	CROSS(k, head->e1, h);
 	EACH_AXIS(i) {
 		wheel->e2[i] = cosine * h[i] + sine * k[i];
 		wheel->e3[i] = cosine * k[i] - sine * h[i];
 	}
-	head->turn_rate = V * (rail[7] - rail[3]) / (spacing * cosine);
+	head->turn_rate = V * (rail[7] - rail[5]) / (spacing * cosine);
 	head->D[0] = 0.0;
 	head->D[1] = set->offset[1] + q[Y] - 0.5 * spacing * wheel->side - own[0];
 	head->D[2] = set->offset[2] + q[Z] - own[1];
@@ -117,15 +118,15 @@ RS_INLINE void place_on_rail(const rs_wheelset *set, const rail_head *head, rs_w
 }
 
 /* The rail's own motion under the wheel, and the wheel's axes. */
-RS_INLINE double move_against_rail(double V, const double *own, const rail_head *head, rs_wheel_state *wheel)
+RS_INLINE double move_against_rail(double V, const double *slope, const rail_head *head, rs_wheel_state *wheel)
 {
 	rs_motion *m = &wheel->at;
 	double rail_turn[3], swept[3], out[3];
 	EACH_AXIS(i)
 		rail_turn[i] = head->turn_rate * head->e1[i];
 	CROSS(swept, rail_turn, head->D);
-	m->close[1] -= V * own[2];
-	m->close[2] -= V * own[3];
+	m->close[1] -= V * slope[0];
+	m->close[2] -= V * slope[1];
 	EACH_AXIS(i) {
 		m->close[i] -= swept[i];
 		m->turn[i] -= rail_turn[i];
@@ -183,7 +184,7 @@ RS_CLONES void rs_axle_motion(const rs_wheelset *set, const double *q, const dou
 		wheel->at = shared;
 		rail_axes(set, q, V, rail, wheel, &head);
 		place_on_rail(set, &head, wheel);
-		double length = move_against_rail(V, rail + 4 * k, &head, wheel);
+		double length = move_against_rail(V, rail + 4 + 2 * k, &head, wheel);
 		if (!seed)
 			continue;
 		memcpy(wheel->to, to, sizeof to);

@@ -14,6 +14,7 @@ from railsym.dampers.lag import estimate_lag
 from railsym.dampers.record import CleanRecord, Record, RecordError, RecordWarning
 
 _MOST_SAMPLES = 512         # per cycle kept: beyond 256 harmonics there is only noise
+_FEWEST_SAMPLES = 384       # per cycle, that the means of blocks of samples leave: 1 % is lost of the 31st harmonic
 _MOST_HARMONICS = 15        # of the imposed motion
 _ASYMMETRY = 0.004          # of the first harmonic: even harmonics above it (and above noise) belong to an asymmetric damper
 
@@ -46,9 +47,8 @@ def clean(record, *, check_units=True):
     if not isinstance(record, Record):
         raise RecordError(f"a Record is needed, not {type(record).__name__}: railsym.dampers.Record(time, displacement, force)")
     checks.check_clipping(record)
-    cycles, frequency, start, faults = _whole_cycles(record)
+    cycles, frequency, start, faults, (kept, departure), inside = _whole_cycles(record)
     notes = []
-    kept, departure = periodic.steady_cycles(cycles[:2])
     dropped = cycles.shape[1] - (kept.stop - kept.start)
     if dropped:
         notes.append(f"{record.label}: {dropped} of {cycles.shape[1]} cycles are transients and were left out")
@@ -59,8 +59,8 @@ def clean(record, *, check_units=True):
         notes.append(f"{record.label}: the force drifts by {100 * drift:.1f} % of its amplitude; taken off")
     # the kept cycles go round, so that they begin where the displacement passes 0
     cycles = np.roll(cycles.reshape(len(cycles), -1), -start, axis=1).reshape(cycles.shape)
-    faults += _checked(record, frequency, cycles, check_units)
-    return _assembled(record, frequency, cycles, notes, faults)
+    faults += checks.check_flat(record, cycles[1]) + _checked(record, frequency, cycles, check_units)
+    return _assembled(record, frequency, cycles, notes, faults, inside)
 
 
 def clean_all(records, *, check_units=True):
@@ -92,24 +92,31 @@ def clean_all(records, *, check_units=True):
 
 
 def _whole_cycles(record):
-    """Channels as an array (m, cycles, samples_per_cycle), frequency, sample of phase 0, defects."""
+    """Channels as an array (m, cycles, samples_per_cycle), frequency, sample of phase 0, defects, the steady cycles, and the mean
+    square of the force inside of blocks of samples (N^2)."""
     given = [record.displacement, record.force] + ([record.velocity] if record.velocity is not None else [])
     step, channels, gap = periodic.uniform(record.time, given)
     channels = channels[:, periodic.moving_part(channels[0])]
     duration = step * (channels.shape[1] - 1)
     frequency, phase = periodic.frequency_of(channels[0], step)
-    checks.check_frequency(record, frequency, step, duration)
     faults = checks.check_gap(record, gap, frequency)
-    cycles, start, first = periodic.on_phases(channels, step, frequency, phase)
+    checks.check_frequency(record, frequency, step, duration)
+    block = max(1, int(1.0 / (frequency * step) / _FEWEST_SAMPLES))
+    blocks, inside = periodic.block_means(channels, block)
+    phase, step = phase + np.pi * frequency * step * (block - 1), block * step
+    cycles, start, first = periodic.on_phases(blocks, step, frequency, phase)
     if cycles.shape[1] < periodic.FEWEST_CYCLES:
         raise RecordError(f"{record.label}: has {frequency * duration:.2f} cycles of {frequency:.3g} Hz; at least 3 whole ones are needed, better 10")
-    kept, _ = periodic.steady_cycles(cycles[:2])
-    if kept.stop - kept.start < cycles.shape[1]:
+    steady = periodic.steady_cycles(cycles[:2])
+    if steady[0].stop - steady[0].start < cycles.shape[1]:
         # frequency and phase again, without the transient
-        begin, end = (int(first + k / (frequency * step)) for k in (kept.start, kept.stop))
-        frequency, phase = periodic.frequency_of(channels[0, begin:end], step)
-        cycles, start, _ = periodic.on_phases(channels, step, frequency, phase - 2.0 * np.pi * frequency * step * begin)
-    return cycles, frequency, start, faults
+        begin, end = (int(first + k / (frequency * step)) for k in (steady[0].start, steady[0].stop))
+        frequency, phase = periodic.frequency_of(blocks[0, begin:end], step)
+        cycles, start, _ = periodic.on_phases(blocks, step, frequency, phase - 2.0 * np.pi * frequency * step * begin)
+        steady = periodic.steady_cycles(cycles[:2])
+    # of a sine of the force's size, the slope makes A^2/2 (omega step)^2 (1 - 1/block^2)/12 of what is inside of blocks
+    slope = np.var(cycles[1]) * (2.0 * np.pi * frequency * step) ** 2 * (1.0 - 1.0 / block**2) / 12.0
+    return cycles, frequency, start, faults, steady, max(inside - slope, 0.0)
 
 
 def _without_trend(cycles):
@@ -143,13 +150,14 @@ def _checked(record, frequency, cycles, check_units):
     return faults
 
 
-def _assembled(record, frequency, cycles, notes, faults):
-    """The CleanRecord; warns of the faults."""
+def _assembled(record, frequency, cycles, notes, faults, inside):
+    """The CleanRecord; warns of the faults. ``inside``: mean square of the noise that the means of blocks have lost."""
     for fault in faults:
         warnings.warn(fault, RecordWarning, stacklevel=3)
-    noise = _scatter(cycles[1])
+    scatter = _scatter(cycles[1])
+    noise = float(np.hypot(scatter, np.sqrt(inside)))
     motion, rate = _imposed_motion(cycles[0], frequency)
-    offset, asymmetric = _force_offset(cycles[1].mean(axis=0), rate, frequency, noise / np.sqrt(cycles.shape[1]))
+    offset, asymmetric = _force_offset(cycles[1].mean(axis=0), rate, frequency, scatter / np.sqrt(cycles.shape[1]))
     if asymmetric:
         notes = [*notes, f"{record.label}: the force is not the same in both directions; its offset {offset:.4g} N is that at no damper speed"]
     force = _thinned(cycles[1] - offset)
@@ -159,7 +167,7 @@ def _assembled(record, frequency, cycles, notes, faults):
     if noise > 1e-3 * np.std(force):
         notes = [*notes, f"{record.label}: noise of the force {100 * noise / (np.std(force) or 1.0):.2g} % of its r.m.s. value"]
     return CleanRecord(time, motion, rate, force.ravel(), frequency, float(abs(_first_harmonic(cycles[0]))), number, count, offset, noise,
-                       name=record.name, messages=(*faults, *notes), record=record)
+                       name=record.name, messages=(*faults, *notes), deviation=_deviation(cycles), record=record)
 
 
 def _first_harmonic(cycles):
@@ -174,15 +182,37 @@ def _scatter(cycles):
     return float(np.sqrt(np.var(cycles, axis=0).mean() * number / (number - 1)))
 
 
+def _deviation(cycles, orders=31):
+    """Standard deviation (N) of the mean harmonics of the force, as `CleanRecord` has it."""
+    (motion, by_motion), (force, by_force) = (_mean_harmonics(one, orders) for one in cycles[:2])
+    by_force[0] = np.hypot(by_force[0], abs(force[0] / motion[0]) * by_motion[0])
+    return by_force
+
+
+def _mean_harmonics(cycles, orders):
+    """Mean harmonics from order 1 of the cycles (cycles, samples), and their standard deviation.
+
+    Neighbouring orders share their variance (five of them), since a few cycles alone tell little; noise need not be white.
+    """
+    number, count = cycles.shape
+    top = min(orders, (count - 1) // 2)
+    harmonics = np.fft.rfft(cycles, axis=1)[:, 1:1 + top] * 2.0 / count
+    mean = harmonics.mean(axis=0)
+    variance = np.sum(np.abs(harmonics - mean) ** 2, axis=0) / (number * (number - 1))
+    shared = np.convolve(variance, np.ones(5))[2:-2] / np.convolve(np.ones(top), np.ones(5))[2:-2]
+    return mean, np.sqrt(shared)
+
+
 def _imposed_motion(cycles, frequency):
     """Displacement and velocity of one cycle from the harmonics that stand out of the noise; offset left out."""
-    number, count = cycles.shape
-    spectrum = np.fft.rfft(cycles.mean(axis=0)) * 2.0 / count
-    floor = max(5.0 * _scatter(cycles) * np.sqrt(2.0 / (number * count)), 1e-5 * abs(spectrum[1]))
-    order = np.arange(spectrum.size)
-    keep = (order == 1) | ((order > 1) & (order <= _MOST_HARMONICS) & (np.abs(spectrum) > floor) & (order < count // 2))
-    spectrum = np.where(keep, spectrum, 0.0) * count / 2.0
-    return np.fft.irfft(spectrum, count), np.fft.irfft(spectrum * 2j * np.pi * frequency * order, count)
+    count = cycles.shape[1]
+    mean, deviation = _mean_harmonics(cycles, _MOST_HARMONICS)
+    # a complex error beyond 3.5 deviations: exp(-12)
+    clear = np.abs(mean) > np.maximum(3.5 * deviation, 1e-5 * abs(mean[0]))
+    clear[0] = True
+    spectrum = np.zeros(count // 2 + 1, dtype=complex)
+    spectrum[1:1 + mean.size] = np.where(clear, mean, 0.0) * count / 2.0
+    return np.fft.irfft(spectrum, count), np.fft.irfft(spectrum * 2j * np.pi * frequency * np.arange(spectrum.size), count)
 
 
 def _force_offset(force, rate, frequency, noise):

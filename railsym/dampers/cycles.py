@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 _JITTER = 1e-3          # of a step: below it samples count as uniform
 _GAP = 1.6              # steps: a longer one is a gap
+_SPLINED = 20           # steps: the longest gap that a spline fills
 _STEADY = 0.003         # of the first harmonic: a cycle that differs by less belongs to the steady ones
 FEWEST_CYCLES = 3
 
@@ -37,7 +40,26 @@ def uniform(time, channels):
     from scipy.interpolate import CubicSpline
 
     grid = np.arange(time[0], time[-1], step)
+    if gap > _SPLINED * step:
+        # a spline through a long gap would swing far out; the gap is refused later, with its place
+        return step, np.array([np.interp(grid, time, one) for one in channels]), gap
     return step, CubicSpline(time, channels, axis=1)(grid), gap
+
+
+def block_means(channels, block):
+    """Means (m, n // block) of blocks of samples, and the mean square of what is inside of the blocks of the second channel."""
+    if block == 1:
+        return channels, 0.0
+    count = channels.shape[1] // block
+    parts = channels[:, :count * block].reshape(len(channels), count, block)
+    means = parts.sum(axis=2) / block
+    inside = parts[1] - means[1][:, None]
+    return means, float(np.vdot(inside, inside)) / (count * (block - 1)) * (1.0 - 1.0 / block)
+
+
+@lru_cache(maxsize=16)
+def _window(n):
+    return np.hanning(n)
 
 
 def moving_part(displacement):
@@ -66,7 +88,7 @@ def frequency_of(signal, step):
         rad, of the sine at the first sample.
     """
     n = signal.size
-    power = np.abs(np.fft.rfft((signal - signal.mean()) * np.hanning(n)))
+    power = np.abs(np.fft.rfft((signal - signal.mean()) * _window(n)))
     peak = int(np.argmax(power[1:])) + 1
     if not power[peak] > 0.0:
         return 0.0, 0.0
@@ -141,7 +163,7 @@ def _lagrange(channels, place):
     left = np.clip(np.floor(place).astype(int), 1, channels.shape[1] - 3)
     t = place - left
     weights = (-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6)
-    return sum(weight * channels[:, left + shift] for shift, weight in zip((-1, 0, 1, 2), weights))
+    return sum(weight * np.take(channels, left + shift, axis=1) for shift, weight in zip((-1, 0, 1, 2), weights))
 
 
 def steady_cycles(channels):
@@ -165,7 +187,9 @@ def steady_cycles(channels):
     first, mean, number = channels @ wave, channels.mean(axis=2), np.arange(cycles)
     late = slice(int(0.4 * cycles), cycles)
     reference = np.median(first.real[:, late], axis=1) + 1j * np.median(first.imag[:, late], axis=1)
-    line = np.array([np.polyval(np.polyfit(number[late], m[late], 1 if cycles > 5 else 0), number) for m in mean])
+    at = number - number[late].mean()
+    tilt = mean[:, late] @ at[late] / (at[late] @ at[late]) if cycles > 5 else np.zeros(len(mean))
+    line = mean[:, late].mean(axis=1)[:, None] + tilt[:, None] * at
     size = np.abs(reference)
     departure = np.maximum(np.abs(first - reference[:, None]), np.abs(mean - line)) / np.where(size > 0.0, size, 1.0)[:, None]
     limit = np.maximum(_STEADY, 3.0 * np.median(departure[:, late], axis=1) / 0.83)

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The energy method: damping from the energy dissipated, stiffness from the energy stored.
 
-A Maxwell damper, F = D(w) and e = s + j(|v|) F with w = ds/dt and j = 1/k, has under a cycle
+A Maxwell damper, F = D(w) and e = s + j F with w = ds/dt and j = 1/k, has under a cycle
 
     oint F de = oint D(w) w dt          dissipated in the damper
-    e - int R(F) dt = j(|v|) F          elongation stored in the spring, R the inverse of D
+    e - int R(F) dt = j F               elongation stored in the spring, R the inverse of D
 
-The second is linear in j and R. Both are sums of hat functions; the lag of the force channel, which only tests of different
-frequency can tell, is where the misfit of the second is least. With j known, the speed w of the damper alone is known
-and D follows from F = D(w). For a sine and constants this is Re(1/K) = 1/k and Im(1/K) = -1/(omega c).
+For a sine and constants this is Re(1/K) = 1/k and Im(1/K) = -1/(omega c): here. For curves: `elongation`.
 """
 
 from __future__ import annotations
@@ -18,7 +16,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 LARGEST_LAG = 0.02  # s, either way
-_RESISTANCES = 9    # hats of R over a half of the force
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +34,12 @@ class Loops:
         Orders that the sampling can tell.
     scale : ndarray (tests,)
         Root mean square of the force, N.
+    mean : ndarray (tests,)
+        N, of the force: what an asymmetric damper adds to its loop.
     noise : ndarray (tests,)
         Root mean square of the force that differs from cycle to cycle, N.
-    samples : ndarray (tests,)
-        Number of samples behind each mean cycle.
+    deviation : ndarray (tests, orders)
+        Standard deviation of the harmonics, N (root mean square of the complex error).
     """
 
     angular: np.ndarray
@@ -50,8 +49,9 @@ class Loops:
     harmonics: np.ndarray
     kept: np.ndarray
     scale: np.ndarray
+    mean: np.ndarray
     noise: np.ndarray
-    samples: np.ndarray
+    deviation: np.ndarray
 
     @property
     def period(self):
@@ -68,14 +68,15 @@ class Loops:
         """The loop of one test."""
         return replace(self, **{name: getattr(self, name)[test:test + 1] for name in self.__dataclass_fields__})
 
-    def coarse(self, step=4):
-        """Every so many points; 64 points a cycle are enough for 31 harmonics."""
+    def coarse(self, step=None):
+        """Every so many points; without ``step`` down to 64 a cycle, which are enough for 31 harmonics."""
+        step = max(1, self.force.shape[1] // 64) if step is None else step
         return replace(self, displacement=self.displacement[:, ::step], velocity=self.velocity[:, ::step], force=self.force[:, ::step])
 
     @property
     def _clear(self):
         """Harmonics that stand out of the noise; the others would only make the damper's speed noisy."""
-        return np.abs(self.harmonics) > 4.0 * (self.noise * np.sqrt(2.0 / self.samples))[:, None]
+        return np.abs(self.harmonics) > 2.8 * self.deviation
 
 
 def synthesis(harmonics, points):
@@ -104,10 +105,19 @@ def loops_of(cleaned, points=256, orders=31):
         kept[k, :top] = True
     rate = 1j * (1 + np.arange(orders)) * angular[:, None] * motion
     scale = np.sqrt(0.5 * np.sum(np.abs(force) ** 2, axis=1))
-    noise = np.array([one.noise for one in cleaned])
-    samples = np.array([one.cycles * one.samples_per_cycle for one in cleaned])
-    made = Loops(angular, synthesis(motion, points), synthesis(rate, points), synthesis(force, points), force, kept, scale, noise, samples)
+    noise, mean = (np.array(part) for part in ([one.noise for one in cleaned], [np.mean(one.force) for one in cleaned]))
+    deviation = np.array([_deviations(one, orders) for one in cleaned])
+    made = Loops(angular, synthesis(motion, points), synthesis(rate, points), synthesis(force, points), force, kept, scale, mean, noise, deviation)
     return made.shifted(0.0)
+
+
+def _deviations(one, orders):
+    """Standard deviation (orders,) of the force's harmonics in a CleanRecord; by white noise where it has none."""
+    white = 2.0 * one.noise / np.sqrt(one.cycles * one.samples_per_cycle)
+    found = np.full(orders, white)
+    if one.deviation is not None:
+        found[:len(one.deviation)] = one.deviation[:orders]
+    return found
 
 
 def hats(x, nodes):
@@ -153,54 +163,21 @@ def constants(loops, lag=None, viscous=False):
         width *= 0.1
 
 
-def stored(loops, stiffness_nodes=None, symmetric=True, linear=False):
-    """Compliance j (nodes,) and relative misfit of the elongation, for loops without lag.
-
-    ``stiffness_nodes`` are the speeds (m/s) of j's hats; None for a constant. ``linear``: R is a constant times F.
-    """
-    bases = _resistances(loops, symmetric) if not linear else [loops.force]
-    weight = 1.0 / np.sqrt(np.mean(loops.displacement**2, axis=1))[:, None]
-    columns = integral(np.array(bases), loops.period)
-    if stiffness_nodes is None:
-        spring = [loops.force]
-    else:
-        spring = [part * loops.force for part in hats(np.abs(loops.velocity), stiffness_nodes)]
-        spring = [part - part.mean(axis=1, keepdims=True) for part in spring]
-    table = np.array([(part * weight).ravel() for part in (*spring, *columns)])
-    wanted = (loops.displacement * weight).ravel()
-    size = np.sqrt(np.sum(table**2, axis=1)) + 1e-300
-    table = table / size[:, None]
-    normal = table @ table.T + 1e-10 * np.eye(len(table))
-    found = np.linalg.solve(normal, table @ wanted)
-    misfit = np.sqrt(np.mean((found @ table - wanted) ** 2))
-    return (found / size)[:len(spring)], float(misfit)
+def speed_nodes(loops, symmetric, count=18):
+    """Speeds (m/s) for a viscous curve: shares of the largest test's range and of the logarithm of all ranges."""
+    peak = np.abs(loops.velocity).max(axis=1)
+    half = shared(0.3 * peak.min() / peak.max(), count)
+    return peak.max() * half if symmetric else np.concatenate([loops.velocity.min() * half[:0:-1], loops.velocity.max() * half])
 
 
-def _resistances(loops, symmetric):
-    """Hats of the force that make up R."""
-    top = np.abs(loops.force).max()
-    grid = top * np.linspace(0.0, 1.0, _RESISTANCES + 1)[1:] ** 1.5
-    bases = hats(loops.force, np.concatenate([-grid[::-1], [0.0], grid]))
-    # odd: a hat less its mirror image
-    return bases[_RESISTANCES + 1:] - bases[_RESISTANCES - 1::-1] if symmetric else bases
-
-
-def lag_of(loops, symmetric=True, stiffness_nodes=None, linear=False):
-    """Lag (s) of the force, where the misfit of the stored elongation is least, and that misfit."""
-    loops = loops.coarse()
-    grid = np.linspace(-LARGEST_LAG, LARGEST_LAG, 15)
-    misfit = [stored(loops.shifted(lag), stiffness_nodes, symmetric, linear) for lag in grid]
-    # A compliance below zero is no spring: such a lag is out of question.
-    value = [m if np.sum(j) > 0.0 else np.inf for j, m in misfit]
-    from scipy.optimize import minimize_scalar
-
-    k = int(np.argmin(value))
-    if not np.isfinite(value[k]):
-        return 0.0, stored(loops, stiffness_nodes, symmetric, linear)[1]
-    lo, hi = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
-    best = minimize_scalar(lambda lag: stored(loops.shifted(lag), stiffness_nodes, symmetric, linear)[1], bounds=(lo, hi), method="bounded",
-                           options={"xatol": 1e-5, "maxiter": 20})
-    return float(best.x), float(best.fun)
+def shared(low, count, also=None, weights=(1.0, 1.0, 1.0)):
+    """Points (count,) from 0 to 1 that share the range, the logarithm of 1 + x/low, and a rising function ``also`` of x."""
+    fine = np.linspace(0.0, 1.0, 2001) ** 2
+    share = weights[0] * fine + weights[1] * np.log1p(fine / low) / np.log1p(1.0 / low)
+    if also is not None:
+        grown = also(fine)
+        share = share + weights[2] * grown / max(grown[-1], 1e-300)
+    return np.interp(np.linspace(0.0, share[-1], count), share, fine)
 
 
 def damper_speed(loops, compliance, stiffness_nodes=None):

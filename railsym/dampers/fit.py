@@ -8,9 +8,9 @@ from time import perf_counter
 
 import numpy as np
 
-from railsym.dampers import energy, solve
+from railsym.dampers import elongation, energy, solve
 from railsym.dampers.models import DamperModel
-from railsym.dampers.parametrisation import Parametrisation, damping_nodes, stiffness_nodes
+from railsym.dampers.parametrisation import Parametrisation, stiffness_nodes
 from railsym.dampers.uncertainty import Identifiability, covariance, identifiability, intervals
 from railsym.errors import ModelError
 
@@ -18,11 +18,13 @@ MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
 METHODS = ("energy", "least_squares")
 _DIFFERENT_FREQUENCIES = 1.2  # ratio that tells the lag
 _GOOD = 1e-3                  # relative misfit below which a constant is enough
-_DOUBTFUL = 3e-3              # relative misfit above which a fit is begun again from another lag
+_DOUBTFUL = 0.02              # relative misfit above which a fit is begun again from another lag
 _NO_MODEL = {"energy": 0.15, "least_squares": 0.05}  # relative misfit above which a model is wrong even if none is better
 _CONSTANT = 0.04             # a stiffness that changes by less over the tests is constant
+_WRONG = 0.03                 # relative misfit of a curve above which the model cannot be right
+_HOPELESS = 0.05              # relative misfit of constants by the energy method above which a curve is needed
 _STEEPEST = 100.0             # times the equivalent damping: the start of a curve
-_EVEN = 5e-3                  # even harmonics above this part of the force: not symmetric
+_EVEN = 2e-3                  # even harmonics above this part of the force, and above noise: not symmetric
 
 
 @dataclass(frozen=True)
@@ -134,7 +136,9 @@ def identify(records, model="maxwell", method="least_squares", bounds=None, prog
     shapes = {"constant": (False,), "curve": (True,), "auto": (False, True)}[damping]
     best = None
     for curve in shapes:
-        found = _fitted(loops, model, curve, odd, given, method, bounds, progress)
+        found = _fitted(loops, model, curve, odd, given, "energy" if len(shapes) > 1 and not curve else method, bounds, progress)
+        if method == "least_squares" and len(shapes) > 1 and not curve and _norm(found[2]) < _HOPELESS:
+            found = _fitted(loops, model, curve, odd, given, method, bounds, progress)
         if best is None or _norm(found[2]) < 0.8 * _norm(best[2]):
             best = found
         if _norm(best[2]) < np.hypot(_GOOD, 1.3 * solve.noise_floor(loops)):
@@ -158,8 +162,10 @@ def _cleaned(records):
 
 
 def _is_odd(loops):
-    even = np.linalg.norm(loops.harmonics[:, 1::2], axis=1) / np.linalg.norm(loops.harmonics, axis=1)
-    return bool(np.median(even) < _EVEN + 3.0 * solve.noise_floor(loops))
+    """Whether the even harmonics of the force are noise in half of the tests."""
+    even, total = np.linalg.norm(loops.harmonics[:, 1::2], axis=1), np.linalg.norm(loops.harmonics, axis=1)
+    noise = np.linalg.norm(loops.deviation[:, 1::2] * loops.kept[:, 1::2], axis=1)
+    return bool(np.median((even - 1.7 * noise) / total) < _EVEN)
 
 
 def _norm(misfit):
@@ -178,22 +184,22 @@ def _lags(loops, model, curve, odd, given):
     plain = energy.constants(loops, viscous=model == "viscous")[2]
     if model == "viscous" or (model == "maxwell" and not curve):
         return [plain]
-    return [energy.lag_of(loops, odd, _speeds(loops, model), linear=not curve)[0], plain]
+    return [elongation.lag_by_elongation(loops, _speeds(loops, model), odd, None if curve else _one_level(loops)), plain]
 
 
-def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, quick=False):
+def _one_level(loops):
+    """Level of force that makes the damper's curve a constant."""
+    return np.array([0.0, np.abs(loops.force).max()])
+
+
+def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, passes=(25, 40)):
     """Parametrisation, vector and misfit; from the second lag too where the first one leaves much."""
     best, fixed = None, 0.0 if given is None else given
     for tau in _lags(loops, model, curve, odd, given):
         made, x = _start(loops, model, curve, odd, tau, int(given is None))
         if method == "least_squares":
-            made, x = solve.refine(loops, made, x, fixed, bounds, progress, 12 if curve else 40, curve)
-            if curve and not quick:
-                # What a wrong model leaves is no reason for a curve with steps.
-                left = _norm(solve.misfit(loops, made, x, fixed))
-                made, x = solve.with_better_nodes(loops, made, x)
-                made, x = solve.refine(loops, made, x, fixed, bounds, progress, left=min(left, 0.2))
-        found = made, x, solve.misfit(loops.coarse(2) if method == "energy" else loops, made, x, fixed)
+            made, x = _sharpened(loops, made, x, fixed, bounds, progress, passes)
+        found = made, x, solve.misfit(loops.coarse(max(1, loops.force.shape[1] // 128)) if method == "energy" else loops, made, x, fixed)
         if best is None or _norm(found[2]) < _norm(best[2]):
             best = found
         if _norm(best[2]) < (_NO_MODEL[method] if method == "energy" else np.hypot(_DOUBTFUL, 2.0 * solve.noise_floor(loops))):
@@ -201,28 +207,52 @@ def _fitted(loops, model, curve, odd, given, method, bounds, progress=False, qui
     return best
 
 
+def _sharpened(loops, made, x, fixed, bounds, progress, passes=(25, 40)):
+    """Least squares; a curve gets nodes after its start, and once more where it then leaves more than noise."""
+    if made.damping_nodes is None:
+        return solve.refine(loops, made, x, fixed, bounds, progress)
+    left = 0.0
+    for most in passes:
+        made, x = solve.with_better_nodes(loops, made, x)
+        made, x = solve.refine(loops, made, x, fixed, bounds, progress, most, left)
+        misfit = _norm(solve.misfit(loops, made, x, fixed))
+        if misfit < np.hypot(_GOOD, 1.1 * solve.noise_floor(loops)):
+            break
+        # what a wrong model leaves is no reason for a curve with steps
+        left = min(misfit, 0.2) if misfit > np.hypot(_WRONG, 3.0 * solve.noise_floor(loops)) else 0.0
+    return made, x
+
+
 def _start(loops, model, curve, odd, tau, lags):
     """Parametrisation and vector by the energy method."""
-    shifted = loops.shifted(tau)
-    kind = "viscous" if model == "viscous" else "maxwell"
-    nodes = _speeds(loops, model)
+    shifted, nodes = loops.shifted(tau), _speeds(loops, model)
     stiffness, value, _ = energy.constants(loops, tau, model == "viscous")
-    speed, rising = loops.velocity, True
+    kind, rising, at = "viscous" if model == "viscous" else "maxwell", True, None
     if kind == "maxwell" and (curve or nodes is not None):
-        constant = max(float(energy.stored(shifted, None, odd, not curve)[0][0]), 1e-10)
-        compliance = np.maximum(energy.stored(shifted, nodes, odd, not curve)[0], 1e-10)
-        rising = bool(compliance[-1] <= compliance[0])
-        ordered = np.minimum.accumulate if rising else np.maximum.accumulate
-        compliance = ordered(np.clip(compliance, 0.1 * constant, 10.0 * constant))
-        stiffness = 1.0 / compliance
-        speed = energy.damper_speed(shifted, compliance, nodes)
-        value = energy.dissipated(shifted, speed)
-    at = None
-    if curve:
-        at = damping_nodes(speed, odd)
-        value = energy.force_curve(shifted, speed, at, _STEEPEST * max(value, 1.0))
+        found = elongation.refined_elongation(shifted, nodes, odd) if curve else elongation.split_elongation(shifted, nodes, True, _one_level(loops))
+        stiffness, rising = _monotone(1.0 / np.maximum(found.compliance, 1e-10))
+        at, curve_force = found.speed, found.force
+        value = max(float(found.force[-1] / max(found.speed[-1], 1e-12)), 1.0)
+        if curve:
+            # a step of force takes a little speed, so that D has a slope everywhere
+            at, value = at + curve_force / (_STEEPEST * np.ptp(curve_force) / max(np.ptp(at), 1e-9)), curve_force
+    elif curve:
+        at = energy.speed_nodes(loops, odd)
+        value = energy.force_curve(shifted, loops.velocity, at, _STEEPEST * max(value, 1.0))
+    at = at if curve else None
     made = Parametrisation(kind, at, nodes, float(np.abs(loops.force).max()), rising, lags)
-    return made, made.vector(max(value, 1.0) if at is None else value, stiffness, tau)
+    return made, made.vector(value, stiffness, tau)
+
+
+def _monotone(stiffness):
+    """A stiffness curve made monotone in the direction of its ends, within a factor of ten of its median; whether it rises."""
+    middle = float(np.clip(np.median(stiffness), 1e4, 1e10))
+    clipped = np.clip(stiffness, 0.1 * middle, 10.0 * middle)
+    rising = bool(clipped[-1] >= clipped[0])
+    # the mean of the two tightest monotone curves from either end
+    sign = 1.0 if rising else -1.0
+    up, down = np.maximum.accumulate(sign * clipped), np.minimum.accumulate(sign * clipped[::-1])[::-1]
+    return sign * 0.5 * (up + down), rising
 
 
 def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, started):
@@ -233,14 +263,16 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
     if method == "least_squares":
         freedom = misfit.size - x.size
         jacobian = solve.evidence(loops, made, x, fixed)
-        spread = covariance(jacobian, misfit, freedom)
+        whiten = solve.entry_weights(loops)
+        deviation = solve.entry_deviations(loops, made.damping_nodes is not None or made.stiffness_nodes is not None)
+        spread = covariance(jacobian, deviation * whiten, misfit * whiten)
         confidence = intervals(made, x, spread, freedom)
         told = identifiability(made, x, jacobian, spread, made.bounds(bounds))
     tests = _errors(cleaned, loops, damper, lag)
     shifted = loops.shifted(lag)
     stiffness = damper.series_stiffness
     if made.kind == "maxwell" and stiffness is None:
-        stiffness = 1.0 / max(float(energy.stored(shifted)[0][0]), 1e-10)
+        stiffness = 1.0 / max(float(elongation.split_elongation(shifted.coarse(), None, made.damping_nodes is None or made.damping_nodes[0] == 0.0).compliance[0]), 1e-10)
     compliance = np.array([0.0 if stiffness is None else 1.0 / stiffness])
     damping = damper.damping or energy.dissipated(shifted, energy.damper_speed(shifted, compliance))
     message = _message(loops, model, method, _norm(misfit), lag, lag_known, made, x, stiffness, damping, told)
@@ -289,8 +321,9 @@ def _message(loops, model, method, misfit, lag, lag_known, made, x, stiffness, d
 
 
 def _better(loops, model, method, given, misfit):
-    """The first costlier model that leaves less than half of the misfit."""
+    """The first costlier model that leaves less than half of the misfit, by a quarter of the points."""
+    quick = loops.coarse()
     for other in MODELS[MODELS.index(model) + 1:]:
-        if _norm(_fitted(loops, other, True, _is_odd(loops), given, method, None, quick=True)[2]) < 0.5 * misfit:
+        if _norm(_fitted(quick, other, True, _is_odd(loops), given, method, None, passes=(12,))[2]) < 0.5 * misfit:
             return other
     return None

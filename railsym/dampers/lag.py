@@ -49,7 +49,7 @@ def estimate_lag(cleaned):
     best = None
     for lag in (0.0, 0.003):
         start[:2] = 1e2 * lag, 0.0
-        found = least_squares(misfit, start, x_scale=1.0, max_nfev=100, method="lm")
+        found = least_squares(misfit, start, x_scale=1.0, max_nfev=100, method="lm", ftol=1e-6, xtol=1e-6)
         best = found if best is None or found.cost < best.cost else best
     lag = 1e-2 * best.x[0]
     freedom = max(1, 2 * len(cleaned) - best.x.size)

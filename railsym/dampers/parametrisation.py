@@ -64,18 +64,20 @@ class Parametrisation:
     def model(self, x, origin=""):
         """The damper of a vector."""
         damping, stiffness, _ = self.split(x)
-        given = {"damping": float(np.exp(damping[0]))} if self.damping_nodes is None else {"damping_curve": (self.damping_nodes, self._forces(damping))}
+        given = {"damping": float(np.exp(damping[0]))} if self.damping_nodes is None else {"damping_curve": (self.damping_nodes, self.forces(damping))}
         if self.kind == "maxwell" and self.stiffness_nodes is None:
             given["series_stiffness"] = float(np.exp(stiffness[0]))
         elif self.kind == "maxwell":
-            given["series_stiffness_curve"] = (self.stiffness_nodes, self._stiffnesses(stiffness))
+            given["series_stiffness_curve"] = (self.stiffness_nodes, self.stiffnesses(stiffness))
         return DamperModel(self.kind, origin=origin, **given)
 
-    def _forces(self, rises):
+    def forces(self, rises):
+        """N at the nodes of the damping curve."""
         force = np.concatenate([[0.0], np.cumsum(rises)]) * self.top_force
         return force - force[int(np.argmin(np.abs(self.damping_nodes)))]
 
-    def _stiffnesses(self, x):
+    def stiffnesses(self, x):
+        """N/m at the nodes of the stiffness curve."""
         return np.exp(x[0] + (1.0 if self.rising else -1.0) * np.concatenate([[0.0], np.cumsum(x[1:])]))
 
     def vector(self, damping, stiffness=(), lag=()):
@@ -104,14 +106,6 @@ class Parametrisation:
         return np.array([*low, *[limits[0]] * lags], dtype=float), np.array([*high, *[limits[1]] * lags], dtype=float)
 
 
-def damping_nodes(speed, symmetric, count=9):
-    """Speeds (m/s) for a damping curve: dense near rest, where curves bend."""
-    grid = np.linspace(0.0, 1.0, count) ** 1.6
-    if symmetric:
-        return np.abs(speed).max() * grid
-    return np.concatenate([speed.min() * grid[:0:-1], speed.max() * grid])
-
-
 def stiffness_nodes(velocity):
     """Speeds (m/s) for a stiffness curve."""
-    return np.abs(velocity).max() * np.array([0.0, 0.1, 0.22, 0.4, 0.65, 1.0])
+    return np.abs(velocity).max() * np.array([0.0, 0.05, 0.12, 0.24, 0.42, 0.68, 1.0])

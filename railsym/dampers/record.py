@@ -116,6 +116,9 @@ class CleanRecord:
     name : str
     messages : tuple of str
         What was found and done.
+    deviation : ndarray (orders,) or None
+        N, standard deviation of the mean harmonics of the force from order 1, by what differs from cycle to cycle in the force and,
+        for order 1, in the displacement. Noise need not be white.
     record : Record
         What was cleaned.
     """
@@ -134,6 +137,7 @@ class CleanRecord:
     lag_deviation: float = np.inf
     name: str = ""
     messages: tuple[str, ...] = ()
+    deviation: np.ndarray | None = field(default=None, repr=False)
     record: Record | None = field(default=None, repr=False)
 
     @property
@@ -154,8 +158,9 @@ class CleanRecord:
     @property
     def dynamic_stiffness(self) -> complex:
         """First harmonic of force over that of displacement, N/m: the imaginary part is what dissipates."""
-        motion = 2.0 * np.mean(self.displacement * np.exp(-2j * np.pi * self.frequency * self.time))
-        return complex(self.harmonic() / motion)
+        _, motion, _, force = self.mean_cycle
+        wave = np.exp(-2j * np.pi * np.arange(self.samples_per_cycle) / self.samples_per_cycle)
+        return complex((force @ wave) / (motion @ wave))
 
     @property
     def dissipated_energy(self) -> float:

@@ -5,7 +5,7 @@ The steady force of F = k(|v|) (e - s) = D(w), w = ds/dt, changes with the param
 
     dF = dk (e - s) - k ds,     D'(w) d(ds)/dt = dk (e - s) - k ds - dD(w)
 
-which is linear in ds and periodic. It is stepped here exactly for coefficients constant over a step; the bench itself gives the
+which is linear in ds and periodic. It is stepped here exactly for rates constant and targets linear over a step; the bench itself gives the
 force, so that the error of these steps slows the iteration down but moves its end by no more than that times the misfit.
 """
 
@@ -16,13 +16,14 @@ from dataclasses import replace
 import numpy as np
 
 from railsym import _core
+from railsym.dampers.energy import shared
 from railsym.dampers.models import curve_value
 from railsym.errors import CoreError
 
 _STEP = 1e-5          # of the logarithms and rises, for the change of curves
-_SOFT = 0.5           # standard deviation of the relative change of slope from node to node
+_SOFT = 0.06          # standard deviation of the relative change of slope from node to node
 _LEAST_NOISE = 1e-3   # relative misfit that curves of a few nodes leave even without noise
-_STIFFER = 30.0       # times as much smoothness in the first, quick pass: nodes beyond the tests must not run away
+_BENCH_ERROR = 3e-5   # relative misfit by the bench's steps
 _WIDEST = 1.5         # of the ends' speed: the damper itself is hardly faster
 
 
@@ -60,7 +61,21 @@ def misfit(loops, made, x, fixed, state=None):
 
 def noise_floor(loops):
     """Relative misfit that noise leaves in the harmonics."""
-    return float(np.sqrt(np.mean((loops.noise / loops.scale) ** 2 * 2.0 * loops.kept.sum(axis=1) / loops.samples)))
+    return float(np.sqrt(np.mean(0.5 * np.sum((loops.deviation * loops.kept) ** 2, axis=1) / loops.scale**2)))
+
+
+def entry_deviations(loops, curves):
+    """Standard deviation of each entry of the misfit: noise, and what the nodes of curves (or the bench's steps) leave, spread over the entries."""
+    least = _LEAST_NOISE if curves else _BENCH_ERROR
+    noise = loops.deviation / (2.0 * np.sqrt(len(loops.scale)) * loops.scale[:, None])
+    part = np.hypot(noise, least / np.sqrt(2.0 * loops.kept.sum()))[loops.kept]
+    return np.concatenate([part, part])
+
+
+def entry_weights(loops):
+    """Weights that make the noise of all entries equal, where it is more than what nodes leave; their mean square error stays."""
+    deviation = entry_deviations(loops, True)
+    return np.sqrt(np.mean(deviation**2)) / deviation
 
 
 def _damping(record, speed):
@@ -94,18 +109,25 @@ def own_speed(record, force):
 
 def jacobian(loops, made, x, fixed, state=None):
     """Slopes of `misfit` (2 kept, unknowns)."""
+    if made.damping_nodes is None and made.stiffness_nodes is None and made.kind == "maxwell":
+        return _linear_jacobian(loops, made, x, fixed)
     record = made.model(x).force_law_record()
     force, s = steady(loops, made.model(x), state)
-    count_d, count_k, _ = made.sizes
+    count_d = made.sizes[0]
     speed = loops.velocity if made.kind == "viscous" else own_speed(record, force)
-    changed = [made.model(x + _STEP * unit).force_law_record() for unit in np.eye(x.size)[:count_d + count_k]]
-    base = _damping(record, speed)[0]
-    d_damping = np.array([(_damping(one, speed)[0] - base) / _STEP for one in changed[:count_d]])
+    damping, stiffening, _ = made.split(x)
+    if made.damping_nodes is None:
+        d_damping = (record["damping"] * speed)[None]
+    else:
+        d_damping = _curve_changes(made.damping_nodes, made.forces, damping, speed, odd=True)
     if made.kind == "viscous":
         change = d_damping
     else:
         stiffness = _stiffness(record, loops.velocity) + np.zeros_like(force)
-        d_stiffness = np.array([(_stiffness(one, loops.velocity) - stiffness) / _STEP for one in changed[count_d:]])
+        if made.stiffness_nodes is None:
+            d_stiffness = stiffness[None]
+        else:
+            d_stiffness = _curve_changes(made.stiffness_nodes, made.stiffnesses, stiffening, np.abs(loops.velocity), odd=False)
         spring = np.concatenate([np.zeros_like(d_damping), d_stiffness * (loops.displacement - s)])
         target = (spring - np.concatenate([d_damping, np.zeros_like(spring[count_d:])])) / stiffness
         change = spring - stiffness * _periodic(target, stiffness / np.maximum(_damping(record, speed)[1], 1e-3), loops.period)
@@ -118,12 +140,42 @@ def jacobian(loops, made, x, fixed, state=None):
     return np.concatenate([columns, turned[None]]).T
 
 
+def _linear_jacobian(loops, made, x, fixed):
+    """Slopes for constants, closed: F = K X, 1/K = 1/k + 1/(i omega c), order by order."""
+    damping, stiffness, _ = (np.exp(part) for part in made.split(x))
+    order = 1 + np.arange(loops.harmonics.shape[1])
+    turning = 1j * order * loops.angular[:, None]
+    lag = made.lag(x) if made.lags else fixed
+    motion = harmonics_of(loops, loops.displacement, lag)
+    dynamic = 1.0 / (1.0 / stiffness[0] + 1.0 / (turning * damping[0]))
+    slopes = [motion * dynamic**2 / (turning * damping[0]), motion * dynamic**2 / stiffness[0]]
+    if made.lags:
+        slopes.append(-turning * made.lag_unit * motion * dynamic)
+    return _flat(loops, np.array(slopes)).T
+
+
+def _curve_changes(nodes, values_of, x, at, odd):
+    """Changes (unknowns, ...) at ``at`` of a monotone cubic whose values at the nodes are ``values_of`` the unknowns."""
+    from scipy.interpolate import PchipInterpolator
+
+    values = np.array([values_of(one) for one in (x, *(x + _STEP * np.eye(x.size)))])
+    if odd and nodes[0] == 0.0:
+        nodes, values = np.concatenate([-nodes[:0:-1], nodes]), np.concatenate([-values[:, :0:-1], values], axis=1)
+    curve = PchipInterpolator(nodes, values, axis=1)
+    inside = np.clip(at, nodes[0], nodes[-1])
+    found = curve(inside)
+    if (inside != at).any():
+        found = found + (at - inside) * curve.derivative()(inside)
+    return (found[1:] - found[0]) / _STEP
+
+
 def _periodic(target, rate, period):
     """Periodic solution of dy/dt = rate (target - y): target (unknowns, tests, points), rate (tests, points) in 1/s."""
     points = rate.shape[1]
     middle = 0.5 * (rate + np.roll(rate, -1, axis=1))
-    keep = np.exp(-middle * (period / points)[:, None])
-    gain = (1.0 - keep) * 0.5 * (target + np.roll(target, -1, axis=2))
+    turns = middle * (period / points)[:, None]
+    keep, share = np.exp(-turns), -np.expm1(-turns) / np.maximum(turns, 1e-12)
+    gain = (share - keep) * target + (1.0 - share) * np.roll(target, -1, axis=2)
     out = np.zeros_like(target)
     now = np.zeros(target.shape[:2])
     for k in range(points):
@@ -148,39 +200,40 @@ def _roughness(made, x, weight):
 
 
 def _weight(loops, left=0.0):
-    """Size of the error of one entry of the misfit; ``left`` is what a first fit left."""
+    """Size of the error of one entry of the misfit; ``left`` is what a model leaves that is wrong."""
     return max(noise_floor(loops), _LEAST_NOISE, left) / np.sqrt(2.0 * loops.kept.sum())
 
 
-def evidence(loops, made, x, fixed, weight=None):
+def evidence(loops, made, x, fixed, weight=None, state=None):
     """Slopes of the misfit and, below them, of the wish for smooth curves."""
     weight = _weight(loops) if weight is None else weight
     own = _roughness(made, x, weight)
     rows = np.array([(_roughness(made, x + _STEP * unit, weight) - own) / _STEP for unit in np.eye(x.size)]).T
-    return np.concatenate([jacobian(loops, made, x, fixed), rows])
+    return np.concatenate([jacobian(loops, made, x, fixed, state) * entry_weights(loops)[:, None], rows])
 
 
-def refine(loops, made, x, fixed, bounds, progress=False, most=40, quick=False, left=0.0):
+def refine(loops, made, x, fixed, bounds, progress=False, most=40, left=0.0):
     """Least squares from ``x``; its parametrisation and vector."""
     from scipy.optimize import least_squares
 
     low, high = made.bounds(bounds)
     state = np.zeros_like(loops.force)
-    weight = _weight(loops, left) * (_STIFFER if quick else 1.0)
+    weight = _weight(loops, left)
+
+    whiten = entry_weights(loops)
 
     def function(p):
-        return np.concatenate([misfit(loops, made, p, fixed, state), _roughness(made, p, weight)])
+        return np.concatenate([misfit(loops, made, p, fixed, state) * whiten, _roughness(made, p, weight)])
 
     x = np.clip(x, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
     if not np.isfinite(function(x)).all():
         return made, x
-    tolerance = 1e-3 if quick else 1e-6
-    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight), bounds=(low, high), x_scale="jac", ftol=tolerance,
-                          xtol=0.1 * tolerance, gtol=1e-12, max_nfev=most, verbose=2 if progress else 0)
+    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight, state), bounds=(low, high), x_scale="jac", ftol=1e-5,
+                          xtol=1e-6, gtol=1e-12, max_nfev=most, verbose=2 if progress else 0)
     return made, found.x
 
 
-def with_better_nodes(loops, made, x, count=11):
+def with_better_nodes(loops, made, x, count=16):
     """The same damping curve with nodes over the speeds that the damper has in these tests, denser where it bends."""
     model = made.model(x)
     record = model.force_law_record()
@@ -190,23 +243,22 @@ def with_better_nodes(loops, made, x, count=11):
         return made, x
     speed = loops.velocity if made.kind == "viscous" else own_speed(record, force)
     speed = np.clip(speed, -_WIDEST * np.abs(loops.velocity).max(), _WIDEST * np.abs(loops.velocity).max())
+    low = 0.3 * np.abs(speed).max(axis=1).min()
     if made.damping_nodes[0] == 0.0:
-        nodes = _spread(record, np.abs(speed).max(), count)
+        nodes = _spread(record, np.abs(speed).max(), low, count)
     else:
-        nodes = np.concatenate([_spread(record, speed.min(), count)[:0:-1], _spread(record, speed.max(), count)])
+        nodes = np.concatenate([_spread(record, speed.min(), low, count)[:0:-1], _spread(record, speed.max(), low, count)])
     damping, stiffness, lag = made.split(x)
     value = _damping(record, nodes)[0]
     moved = replace(made, damping_nodes=nodes)
     return moved, np.concatenate([moved.vector(value, np.ones(max(len(stiffness), 1)), 0.0)[:len(nodes) - 1], stiffness, lag])
 
 
-def _spread(record, end, count):
-    """Nodes from 0 to ``end``: equal shares of speed (towards rest), of force and of bend."""
-    fine = np.linspace(0.0, 1.0, 401) ** 2
-    force, slope = _damping(record, fine * end)
-    share = fine ** (1.0 / 1.6) + np.abs(force / force[-1])
-    bend = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(np.log(np.maximum(slope, 1e-3 * slope.max())))))])
-    share = share + 0.7 * bend / max(bend[-1], 1.0)
-    nodes = np.interp(np.linspace(0.0, share[-1], count), share, fine)
-    nodes[0], nodes[-1] = 0.0, 1.0
-    return end * nodes
+def _spread(record, end, low, count):
+    """Nodes from 0 to ``end``: shares of speed, of its logarithm down to ``low``, of force and of bend."""
+    def force_and_bend(fine):
+        force, slope = _damping(record, fine * end)
+        bend = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(np.log(np.maximum(slope, 1e-3 * slope.max())))))])
+        return np.abs(force / force[-1]) + bend / max(bend[-1], 1.0)
+
+    return end * shared(low / abs(end), count, force_and_bend, (0.7, 0.7, 1.4))

@@ -31,9 +31,28 @@ class Identifiability:
     warnings: tuple[str, ...]
 
 
-def covariance(jacobian, misfit, freedom):
-    """Covariance of the unknowns for independent errors of the size that the misfit shows."""
-    return np.linalg.pinv(jacobian.T @ jacobian) * float(misfit @ misfit) / max(freedom, 1)
+def covariance(jacobian, deviation, misfit):
+    """Covariance of the unknowns of an unweighted fit.
+
+    Parameters
+    ----------
+    jacobian : ndarray (n, p)
+        Of the misfit and, below, of the wish for smooth curves.
+    deviation : ndarray (m,)
+        Standard deviation of each entry of the misfit by noise; the rows below have the mean one.
+    misfit : ndarray (m,)
+        What is left: where it is more than the noise says, all deviations are larger by that.
+
+    Notes
+    -----
+    P J' V J P with P = (J'J)^-1 and V the variances: entries of coloured noise differ, and an interval by the mean variance alone would
+    be too narrow for constants, which hang on the first harmonics.
+    """
+    excess = max(1.0, float(np.sqrt(misfit @ misfit / (deviation @ deviation))))
+    all_rows = np.concatenate([deviation, np.full(len(jacobian) - len(deviation), np.sqrt(np.mean(deviation**2)))]) * excess
+    inverse = np.linalg.pinv(jacobian.T @ jacobian)
+    moved = inverse @ (jacobian * all_rows[:, None]).T
+    return moved @ moved.T
 
 
 def intervals(parametrisation, x, spread, freedom):

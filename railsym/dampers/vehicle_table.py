@@ -66,7 +66,7 @@ def critical_speeds(vehicle, models, group="anti_yaw_damper", conicity=CONICITY,
         The file's first without it.
     amplitudes : sequence of float
         m, of the elongation of the damper; the equivalent damping and stiffness are those at the frequency of the unstable mode
-        that the linearisation about rest gives.
+        that the linearisation about rest gives, or the damper of the file where that has no critical speed.
 
     Returns
     -------
@@ -81,8 +81,10 @@ def critical_speeds(vehicle, models, group="anti_yaw_damper", conicity=CONICITY,
         for name, model in models.items():
             tangent = _speeds(load_vehicle(put_into(vehicle, model, Path(folder) / "one.toml", group)), configuration, conicity)
             found[f"{name}, about rest"] = tangent
-            for amplitude in amplitudes:
-                frequency = float(np.ma.median(tangent.frequency_hz))
+            # a model without a critical speed about rest has no frequency of its own: then that of the file's damper
+            unstable = next((one.frequency_hz for one in (tangent, found["as in the file"]) if np.ma.count(one.frequency_hz)), None)
+            for amplitude in amplitudes if unstable is not None else ():
+                frequency = float(np.ma.median(unstable))
                 path = put_into(vehicle, equivalent(model, amplitude, frequency), Path(folder) / "one.toml", group)
                 found[f"{name}, {1e3 * amplitude:g} mm at {frequency:.1f} Hz"] = _speeds(load_vehicle(path), configuration, conicity)
     return DamperSpeeds(base.name, group, configuration or "", tuple(found), np.asarray(conicity, dtype=float),

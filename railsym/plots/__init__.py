@@ -2,6 +2,7 @@
 """Drawings of results. Functions take result objects, only draw, and return Matplotlib axes; Matplotlib is imported when one
 is called. Speeds are shown in km/h, frequencies in Hz, damping ratios in per cent."""
 
+from railsym.plots.damper_map import plot_damper_map
 from railsym.plots.dampers import plot_damper
 from railsym.plots.eigenvalues import plot_damping, plot_eigenvalues, plot_root_locus
 from railsym.plots.mode_shape import plot_mode_shape
@@ -12,6 +13,6 @@ from railsym.plots.stability_curves import (plot_change, plot_critical_speed, pl
                                             plot_stability_report)
 from railsym.plots.track import plot_track
 
-__all__ = ["plot_change", "plot_critical_speed", "plot_damper", "plot_damping", "plot_eigenvalues", "plot_frequency", "plot_mode_shape",
-           "plot_parameter_map", "plot_profile_pair", "plot_root_locus", "plot_run", "plot_sensitivities", "plot_spectrum", "plot_stability_map",
-           "plot_stability_report", "plot_track"]
+__all__ = ["plot_change", "plot_critical_speed", "plot_damper", "plot_damper_map", "plot_damping", "plot_eigenvalues", "plot_frequency",
+           "plot_mode_shape", "plot_parameter_map", "plot_profile_pair", "plot_root_locus", "plot_run", "plot_sensitivities", "plot_spectrum",
+           "plot_stability_map", "plot_stability_report", "plot_track"]

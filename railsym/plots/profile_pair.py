@@ -81,7 +81,7 @@ def _draw_lines(axes, shifts, place, height):
 
 def _draw_difference(axes, contact, conicities):
     for found in conicities:
-        colour, dashes = (BLUE, "--") if found.with_roll else (BLACK, "-")
+        colour, dashes = _style(found)
         axes.plot(_MM * found.y, _MM * found.rolling_radius_difference, color=colour, linestyle=dashes, linewidth=1.4, label=_how(found))
     shown = np.concatenate([f.rolling_radius_difference[np.abs(f.y) <= contact.y[-1]] for f in conicities])
     axes.set_xlim(_MM * contact.y[0], _MM * contact.y[-1])
@@ -101,10 +101,10 @@ def _draw_angle(axes, contact):
 
 def _draw_conicity(axes, conicities):
     for found in conicities:
-        colour, dashes = (BLUE, "--") if found.with_roll else (BLACK, "-")
+        colour, dashes = _style(found)
         axes.plot(_MM * found.amplitude, found.conicity, color=colour, linestyle=dashes, linewidth=1.4, label=_how(found))
         at = 3e-3
-        if not found.with_roll and found.amplitude[0] <= at <= found.amplitude[-1]:
+        if not found.with_roll and found.load is None and found.amplitude[0] <= at <= found.amplitude[-1]:
             value = float(np.interp(at, found.amplitude, found.conicity))
             axes.plot([_MM * at], [value], "o", color=colour, markersize=4.5)
             low = value < 0.15 * np.nanmax(found.conicity)       # below it there would be no room
@@ -115,5 +115,11 @@ def _draw_conicity(axes, conicities):
     tidy(axes, "amplitude, mm", "tan $\\gamma_e$", "equivalent conicity (EN 15302)")
 
 
+def _style(found):
+    return (VERMILION, ":") if found.load is not None else (BLUE, "--") if found.with_roll else (BLACK, "-")
+
+
 def _how(found):
+    if found.load is not None:
+        return f"elastic, {found.load / 1e3:g} kN"
     return "with roll" if found.with_roll else "without roll"

@@ -53,5 +53,10 @@ def random_state(rng, shift=0.0):
     return State(q, u, SPEED, rng.normal(size=3) * 0.05, rails)
 
 
+def lie(rails):
+    """Eight numbers of rs_wheel_rail_rows from (left, right) of (y, z, dy/ds, dz/ds)."""
+    return np.concatenate([rails[0][:2], rails[1][:2], rails[0][2:], rails[1][2:]])
+
+
 def rows_of(forces, state, seed=None):
-    return forces.rows(state.q, state.u, state.speed, state.w, state.rails, seed)
+    return forces.rows(state.q, state.u, state.speed, state.w, lie(state.rails), seed)
