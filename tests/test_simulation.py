@@ -175,6 +175,7 @@ def test_run_is_saved_as_it_goes(tmp_path):
 @pytest.mark.parametrize(("options", "message"), [
     ({"dt": 0.0}, "dt = 0.0"), ({"rho": 1.5}, "from 0 to 1"), ({"tolerance": -1.0}, "tolerance"), ({"rate": 5000.0}, "rate 5000.0 Hz"),
     ({"channels": "bogey.y"}, "no channel"), ({"initial": {"frame.why": 1.0}}, "frame.why"), ({"law": "polach"}, "law: these belong to"),
+    ({"contact": CONES, "laws": "polach"}, "argument 'laws' is unknown; nearest: 'law'"),
     ({"initial": (np.zeros(3), np.zeros(3))}, "shapes"), ({"markers": {"m": ("frame", [0.0, np.nan, 0.0])}}, "marker 'm'"),
 ])
 def test_bad_input_says_what_and_why(options, message):
@@ -190,3 +191,22 @@ def test_bad_runs_say_what_and_why():
         bogie(track=rs.Track.straight(100.0), contact=CONES).run(5.0)
     with pytest.raises(SimulationError, match="irregularities, which the linear contact does not see"):
         bogie(track=rs.Track.straight(500.0).with_irregularity("erri_b176_low", seed=1))
+
+
+def test_steps_land_where_the_speed_bends(monkeypatch):
+    """Bends within steps: second order; without landing there the errors are many times larger and fall irregularly."""
+    from railsym.simulation.assembled import Assembled
+
+    def errors():
+        ends = []
+        for dt in (1e-3, 5e-4, 2.5e-4 / 16):
+            simulation = Simulation(BOGIE, speed=[(0.02037, 20.0), (0.12051, 20.8)], dt=dt, tolerance=1e-6, channels="s")
+            simulation.run(0.15)
+            ends.append(simulation.parts.integrator.state())
+        used = ~simulation.parts.model.topology.cyclic
+        return [np.abs(ends[k][1] - ends[2][1])[used].max() for k in (0, 1)]
+
+    landed = errors()
+    monkeypatch.setattr(Assembled, "kinks", lambda self, end: np.empty(0))
+    assert np.log2(landed[0] / landed[1]) == pytest.approx(2.0, abs=0.1)
+    assert errors()[1] > 5.0 * landed[1]

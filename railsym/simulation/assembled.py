@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from inspect import signature
+
 import numpy as np
 
 from railsym import _core
@@ -11,7 +13,7 @@ from railsym.contact import LinearContact
 from railsym.equilibrium import static_preload
 from railsym.errors import SimulationError
 from railsym.model import Model
-from railsym.simulation.speed import SpeedProfile
+from railsym.vehicle_checks import unknown
 
 _BODY_KERNELS = ("rigid_body", "wheelset", "wheelset_with_axleboxes")
 DRIVE_FREQUENCY = 0.1  # Hz, assumed: far below what moves a vehicle against its track
@@ -76,6 +78,10 @@ class Assembled:
             if contact is not None:
                 self._add_linear(contact)
             return None
+        known = list(signature(WheelRail).parameters)[2:]
+        for name in forces:
+            if name not in known:
+                raise SimulationError(f"argument {name!r} is {unknown(name, known, 'arguments of the wheel-rail forces')}")
         return contact if isinstance(contact, WheelRail) else WheelRail(self.vehicle, contact, **forces)
 
     def _add_linear(self, contact):
@@ -186,8 +192,6 @@ class Assembled:
 
     def number(self, name, what):
         """Number of a coordinate, or an error with near matches."""
-        from railsym.vehicle_checks import unknown
-
         if name not in self.names:
             raise SimulationError(f"{what}: {name!r} is {unknown(name, self.names, 'coordinates')}")
         return self.names.index(name)

@@ -128,8 +128,8 @@ def _continued(balance, x, start, end, first, speed):
             share *= 0.5
             if share < 1.0 / 256.0 or end == start:
                 place = first + speed * (start + at * (end - start))
-                raise ConvergenceError(f"no equilibrium was found beyond s = {place:.6g} m: the vehicle cannot run there steadily, or a wheel leaves its "
-                                       "contact table; look at the last places (places=...) and begin on a straight")
+                raise ConvergenceError(f"no equilibrium was found beyond s = {place:.6g} m: the vehicle cannot run there steadily, or a wheel leaves "
+                                       "its contact table; look at the last places (places=...) and begin on a straight")
             continue
         x, at = found, at + share
     return x

@@ -10,7 +10,6 @@ from contextlib import nullcontext
 
 import numpy as np
 
-from railsym import _core_integrator as core
 from railsym.errors import SimulationError
 from railsym.results import ChannelWriter, Run
 from railsym.results.metadata import Ending, RunInfo
@@ -185,7 +184,7 @@ class Simulation:
         controls = Controls(self)
         self.ending = Ending("running")
         try:
-            with _bar(total * self.dt, progress) as bar:
+            with _bar(total, self.dt, progress) as bar:
                 while self.ending.reason == "running" and (left := first + total - self.parts.integrator.report.steps) > 0:
                     done = self.parts.integrator.report.steps
                     for function, period in calls:
@@ -195,7 +194,7 @@ class Simulation:
                     times, values = self.steps(count)
                     if writer is not None and len(times):
                         writer.write(times, values)
-                    bar.update(round(count * self.dt, 9))
+                    bar.update(count)
         except KeyboardInterrupt:
             self.ending = Ending("interrupted", time=self.time, distance=float(self.parts.speed.place(self.time)))
         if self.ending.reason == "running":
@@ -296,10 +295,10 @@ class _NoBar:
         """Nothing is shown."""
 
 
-def _bar(total, show):
+def _bar(steps, dt, show):
     if not show:
         return _NoBar()
     from tqdm import tqdm
 
-    form = "{desc}: {percentage:3.0f}%|{bar}| {n:.1f}/{total:.1f} s [{elapsed}<{remaining}]"
-    return tqdm(total=total, desc="simulated", bar_format=form)
+    form = "{desc}: {percentage:3.0f}%|{bar}| [{elapsed}<{remaining}]"
+    return tqdm(total=steps, desc=f"simulating {steps * dt:g} s", bar_format=form)
