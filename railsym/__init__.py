@@ -27,6 +27,7 @@ _MODULE_OF = {
     "Track": "track",
     "Vehicle": "vehicle",
     "WheelRail": "wheel_rail",
+    "bifurcation": "nonlinear",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",
@@ -46,7 +47,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("criteria", "dampers", "plots", "results", "simulation", "track")
+_SUBMODULES = ("criteria", "dampers", "nonlinear", "plots", "results", "simulation", "track")
 
 __all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
 
