@@ -15,6 +15,7 @@ from railsym.nonlinear.rolling import RollingSystem
 
 RAMP_TOLERANCE = 1e-3   # m/s^2: amplitudes are read from motions, not differences of them
 _KNOWN = 0.05           # of the amplitude: a simulated cycle this near to a branch is on it
+_BEGINNINGS = 4         # cycles of the ramps from which branches are followed, at most
 _SCAN = 25              # speeds at which eigenvalues are looked at
 
 
@@ -210,12 +211,24 @@ def _branches(system, hopf, ramps, speeds, points, say):
     for point in hopf:
         if point.rising:
             _attempt(branches, notes, from_hopf, system, point, speeds, **options)
+    begun = 0
     for one in ramps:
-        for k in range(len(one.speed) if one is not None else 0):
-            if one.settled[k] and one.lasting[k] and np.isfinite(one.frequency_hz[k]) and not _known(branches, one.speed[k], one.largest[k]):
-                for along in (1.0, -1.0):
+        for k in _periodic(one):
+            if begun < _BEGINNINGS and not _known(branches, one.speed[k], one.largest[k]):
+                before, begun = len(branches), begun + 1
+                for along in (-1.0, 1.0):
                     _attempt(branches, notes, from_motion, system, one.states[k], 1.0 / one.frequency_hz[k], one.speed[k], speeds, along, **options)
+                    if len(branches) == before:
+                        break
     return branches, notes
+
+
+def _periodic(one):
+    """Numbers of the speeds of a ramp (or None) with a settled cycle, those in the middle first: the ends are near folds."""
+    if one is None:
+        return []
+    found = np.flatnonzero(one.settled & one.lasting & np.isfinite(one.frequency_hz))
+    return sorted(found, key=lambda k: abs(k - np.median(found)))
 
 
 def _attempt(branches, notes, follow, *arguments, **options):

@@ -93,7 +93,7 @@ def from_hopf(system, hopf, speeds, progress=None, points=200, speed_scale=2.0):
     if found is None:
         raise ConvergenceError(f"no periodic motion was found near the linear critical speed of {hopf.speed:.6g} m/s: give a finer step (dt), or "
                                "contact and creep law are not smooth near the centre")
-    return _follow(system, shooting, found, found - base, speeds, "linear critical speed", progress, points)
+    return _follow(_Track(shooting, found, found - base), speeds, "linear critical speed", progress, points)
 
 
 def from_motion(system, z, period, speed, speeds, along, progress=None, points=200, speed_scale=2.0):
@@ -114,16 +114,18 @@ def from_motion(system, z, period, speed, speeds, along, progress=None, points=2
     found = shooting.solve(x, shooting.phase(x), row)
     if found is None:
         raise ConvergenceError(f"the motion at {speed:.6g} m/s is not periodic with {period:.4g} s")
-    return _follow(system, shooting, found, along * row, speeds, f"a simulated motion at {speed:.4g} m/s", progress, points)
+    track = _Track(shooting, found, along * row)
+    tangent = shooting.tangent(track.monodromy, shooting.phase(found))
+    track.direction = tangent * np.sign(tangent[-1]) * along
+    return _follow(track, speeds, f"a simulated motion at {speed:.4g} m/s", progress, points)
 
 
 
-def _follow(system, shooting, x, direction, speeds, origin, progress, points):
+def _follow(track, speeds, origin, progress, points):
     """Predict along the secant of the last two points, correct square to it.
 
     The tangent from the matrix, a derivative, is less use as a predictor: corners of contact tables and of FASTSIM turn it.
     """
-    track = _Track(shooting, x, direction)
     folds, ending = [], f"{points} points were computed"
     while len(track.orbits) < points:
         try:
@@ -144,7 +146,7 @@ def _follow(system, shooting, x, direction, speeds, origin, progress, points):
         if orbit.amplitude.max() < 0.2 * _FIRST * LENGTH:
             ending = "steady rolling: another Hopf point"
             break
-    return Branch(tuple(track.orbits), tuple(folds), origin, ending, system.wheelsets)
+    return Branch(tuple(track.orbits), tuple(folds), origin, ending, track.shooting.system.wheelsets)
 
 
 class _Track:

@@ -23,6 +23,7 @@ _DIFFERENCE = 1e-3   # of a scale: 1 um; over less the corners of FASTSIM and of
 _CLOSED = 1e-5       # of the amplitude, but not of more than 1 mm, that an orbit may be open
 _STALLED = 1e-4      # the same, that is taken where corners of the contact let the iteration come no nearer
 _ITERATIONS = 12
+_SHORTENED = 2       # times that a step is quartered
 _DIVERGED = 5.0      # times the smallest residual so far
 SAMPLES = 64         # of the lateral displacement in a period, at least
 
@@ -169,11 +170,18 @@ class Shooting:
                 return x
             if not size <= _DIVERGED * best:
                 return None
-            move = np.linalg.solve(jacobian, -wrong)
-            x = x + move
-            wrong = self._wrong(x, start, phase, row)
+            x, move, wrong = self._moved(x, np.linalg.solve(jacobian, -wrong), start, phase, row)
             jacobian += np.outer(wrong, move) / (move @ move)
         return x if np.abs(wrong).max() <= _STALLED * size_of_motion else None
+
+    def _moved(self, x, move, start, phase, row):
+        """The iteration's step, shortened where it would leave the contact table."""
+        for _ in range(_SHORTENED):
+            try:
+                return x + move, move, self._wrong(x + move, start, phase, row)
+            except FlowError:
+                move = 0.25 * move
+        return x + move, move, self._wrong(x + move, start, phase, row)
 
     def _wrong(self, x, start, phase, row):
         return np.concatenate([self.end(x)[0] - x[:-2], [phase @ (x - start)[:-2], row @ (x - start)]])

@@ -11,12 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from railsym.errors import ContactError
 from railsym.nonlinear.rolling import FlowError
 
 WINDOW = 2.0         # s, over which amplitudes are taken: some periods of the slowest hunting
 SETTLED = 2e-3       # of the amplitude, from window to window and over three of them
 KICK = 1e-4          # m
 AT_REST = 2e-5       # m: amplitude of the wheelset that moves most; below it steady rolling is reached
+_STRIDE = 1e-4       # m, of a displacement, so that contacts follow
+_ITERATIONS = 6      # of the loads, a stride
+_LOAD = 1e-3         # of the load: settled enough to begin with
+_HEAVE_ROLL = [2, 4]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,12 +64,34 @@ class Ramp:
 
 
 def disturbed(system, z, size):
-    """A state with the whole vehicle displaced sideways by ``size`` (m): a step of the track's alignment."""
-    z = z.copy()
-    for k, name in enumerate(system.names):
-        if name.endswith(".y"):
-            z[k] += size
+    """A state of rolling with the whole vehicle displaced sideways by ``size`` (m), as by a step of the track's alignment.
+
+    Wheelsets rise and roll with it so that their wheels press on the rails as before: else one wheel would hang in the air and the
+    other be pressed into its rail by the conicity times the size.
+    """
+    z, across = z.copy(), np.array([name.endswith(".y") for name in system.names])
+    count = max(1, int(np.ceil(abs(size) / _STRIDE)))
+    free = [[system.names.index(f"{name}.{part}") for part in ("z", "roll")] for name in system.wheelsets]
+    wanted = _pressed(system, z)[0]
+    for _ in range(count):
+        z[across] += size / count
+        for _ in range(_ITERATIONS):
+            try:
+                rows, blocks = _pressed(system, z)
+            except ContactError as error:
+                raise FlowError(f"a sideways displacement of {1e3 * size:.3g} mm: {error}") from None
+            for own, r, block, goal in zip(free, rows, blocks, wanted):
+                z[own] += np.clip(np.linalg.solve(block, goal - r), -_STRIDE, _STRIDE)
+            if np.abs(rows - wanted).max() < _LOAD * np.abs(wanted).max():
+                break
     return z
+
+
+def _pressed(system, z):
+    """Rows of z and roll (wheelsets, 2) of the wheel-rail forces, and their slopes over z and roll."""
+    q, u = system.coordinates_of(z)
+    rows, blocks = system.parts.wheels.rows(q, u, system.speed, seed=(1.0, 0.0))
+    return rows[:, _HEAVE_ROLL], blocks[:, _HEAVE_ROLL][:, :, _HEAVE_ROLL]
 
 
 def ramp(system, speeds, disturbance, longest=40.0, progress=None):
