@@ -12,9 +12,9 @@ import numpy as np
 from benchmarks.contact import contact_figures
 from benchmarks.creep import creep_figures
 from benchmarks.measure import Figure, cost_of_code, median_time, printed_by
+from benchmarks.wheel_rail import wheel_rail_figures
 from benchmarks.track import track_figures
 from benchmarks.transient import transient_figures
-from benchmarks.wheel_rail import wheel_rail_figures
 
 _DERIVE = "from derive.__main__ import generated_files; generated_files()"
 _IMPORT = "import time; start = time.perf_counter(); import railsym; print(time.perf_counter() - start)"

@@ -132,7 +132,8 @@ int rs_integrator_kinks(rs_integrator *it, int count, const double *time)
 	it->kink = kink;
 	it->kinks = count;
 	it->next_kink = 0;
-	while (it->next_kink < count && kink[it->next_kink] < it->report.time)
+	/* one at the present time was met at the end of the step before */
+	while (it->next_kink < count && kink[it->next_kink] <= it->report.time + 1e-6 * it->step)
 		it->next_kink++;
 	return RS_OK;
 }

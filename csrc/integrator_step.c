@@ -215,7 +215,7 @@ static int advance(rs_integrator *it, double from, double h)
 	/* af = 1 asks for the end of the step, which may be a kink: this side of it */
 	double at = it->af < 1.0 - 1e-6 ? it->af : 1.0 - 1e-6;
 	predict(it, h);
-	int status = rs_integrator_move(it, from + at * h);
+	int status = rs_integrator_move(it, from + at * h), ran = 0; /* the coordinate that changed most when it last failed */
 	/* a change of tau in the last digit, from the difference of two times, is no reason for new factors */
 	int factors = fabs(it->factored - with.tau) > 1e-7 * with.tau ? ALL : it->wheels && it->seen > RENEW ? WHEELS : KEPT;
 	it->seen = 0.0;
@@ -223,8 +223,15 @@ static int advance(rs_integrator *it, double from, double h)
 		status = look(it, &with, factors);
 		if (!status)
 			status = iterate(it, &with);
+		if (set && (status == RS_SINGULAR || status == RS_NOT_FINITE)) {
+			/* the iterate ran away from a state that was well behaved */
+			it->report.coordinate = ran;
+			status = RS_NOT_CONVERGED;
+			break;
+		}
 		if (status != RS_NOT_CONVERGED)
 			break;
+		ran = worst_of(it);
 		status = set + 1 < SETS ? RS_OK : fail(it, RS_NOT_CONVERGED);
 		/* wheels first; where that does not help, everything */
 		factors = it->wheels && factors == KEPT ? WHEELS : ALL;

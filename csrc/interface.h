@@ -131,6 +131,53 @@ int rs_contact_lookup(const rs_contact_table *table, const double *place, rs_pat
 int rs_contact_lookup_many(const rs_contact_table *table, int n, const double *place, rs_patch *patch, int *count,
                            int *beyond);
 
+enum { RS_OUT_OF_TRACK = 20 };
+enum { RS_TRACK_POWERS = 8, RS_TRACK_PLACE_POWERS = 14, RS_TRACK_RAILS = 8 };
+
+typedef struct rs_track rs_track;
+typedef struct {
+	double place[3];         /* m, origin of the frame, inertial */
+	double place_low[3];     /* m, what place lost in rounding: the origin is place + place_low */
+	double attitude[9];      /* P by rows: frame to inertial components */
+	double turning[3];       /* 1/m, angular velocity per metre of track, frame components */
+	double turning_rate[3];  /* 1/m^2, d turning/ds */
+} rs_track_frame;
+typedef struct {
+	double D[3];    /* m, design place of body 2 from that of body 1, frame 1 */
+	double C[9];    /* by rows: frame 2 to frame 1 components */
+	double dD[3];   /* m/s, rate of D seen in frame 1 */
+	double wf[3];   /* rad/s, angular velocity of frame 2 in frame 1, components of frame 2 */
+} rs_track_pose;
+typedef struct {
+	double middle, half;                   /* m, x = (s - middle)/half, -1 <= x <= 1 */
+	double curvature[8];                   /* 1/m, powers of x, lowest first */
+	double cant[8];                        /* -, sin(cant angle) */
+	double slope[8];                       /* -, sin(slope), + uphill */
+	double heading[9];                     /* rad */
+	double place[3][14];                   /* m, from base, inertial */
+	double base[3], base_low[3];           /* m, place at middle */
+} rs_track_piece;
+
+int rs_track_frame_at(const rs_track *track, double s, rs_track_frame *frame);
+int rs_track_rails_at(const rs_track *track, double s, double *rails);
+void rs_track_pose_of(const rs_track_frame *first, const rs_track_frame *second, double V, const double *offset1,
+                      const double *offset2, rs_track_pose *pose);
+void rs_track_limits(const rs_track *track, double *start, double *end);
+int rs_track_kinks(const rs_track *track, const double **kinks);
+int rs_track_jumps(const rs_track *track, const double **jumps);
+double rs_track_next_kink(const rs_track *track, double s);
+
+int rs_track_frames(const rs_track *track, int n, const double *s, rs_track_frame *frames, int *failed);
+int rs_track_rails(const rs_track *track, int n, const double *s, double *rails, int *failed);
+int rs_track_poses(const rs_track *track, int n, const double *s1, const double *s2, const double *V,
+                   const double *offset1, const double *offset2, rs_track_pose *poses, int *failed);
+
+rs_track *rs_track_create(int pieces, const double *joint, const rs_track_piece *piece, int kinks, const double *kink,
+                          int jumps, const double *jump);
+int rs_track_add_rails(rs_track *track, double start, double step, int count, const double *coefficients,
+                       const double *after);
+void rs_track_free(rs_track *track);
+
 typedef struct {
 	int pieces;                  /* of the spline, a unit of each axis of the half ball */
 	int ratio_pieces;            /* over log(a/b) */
@@ -188,6 +235,7 @@ typedef struct {
 	int pieces;           /* of the coefficients' cubics over ln(a/b) */
 	double start, step;   /* ln(a/b) of the first node, and from node to node */
 	const double *c;      /* pieces x 4 x 4: C11, C22, C23, C33 = c0 + t (c1 + t (c2 + t c3)), t = ln(a/b) - node */
+	const rs_creep_table *table; /* of RS_CREEP_EXACT, kept, not copied; others need none */
 } rs_creep_settings;
 
 typedef struct rs_wheel_rail rs_wheel_rail;
@@ -214,53 +262,6 @@ typedef struct {
 	double limit[3];       /* largest |y| m, |roll| rad, penetration m; yaw has none */
 	rs_cone cone[3];
 } rs_contact_cones;
-
-enum { RS_OUT_OF_TRACK = 20 };
-enum { RS_TRACK_POWERS = 8, RS_TRACK_PLACE_POWERS = 14, RS_TRACK_RAILS = 8 };
-
-typedef struct rs_track rs_track;
-typedef struct {
-	double place[3];         /* m, origin of the frame, inertial */
-	double place_low[3];     /* m, what place lost in rounding: the origin is place + place_low */
-	double attitude[9];      /* P by rows: frame to inertial components */
-	double turning[3];       /* 1/m, angular velocity per metre of track, frame components */
-	double turning_rate[3];  /* 1/m^2, d turning/ds */
-} rs_track_frame;
-typedef struct {
-	double D[3];    /* m, design place of body 2 from that of body 1, frame 1 */
-	double C[9];    /* by rows: frame 2 to frame 1 components */
-	double dD[3];   /* m/s, rate of D seen in frame 1 */
-	double wf[3];   /* rad/s, angular velocity of frame 2 in frame 1, components of frame 2 */
-} rs_track_pose;
-typedef struct {
-	double middle, half;                   /* m, x = (s - middle)/half, -1 <= x <= 1 */
-	double curvature[8];                   /* 1/m, powers of x, lowest first */
-	double cant[8];                        /* -, sin(cant angle) */
-	double slope[8];                       /* -, sin(slope), + uphill */
-	double heading[9];                     /* rad */
-	double place[3][14];                   /* m, from base, inertial */
-	double base[3], base_low[3];           /* m, place at middle */
-} rs_track_piece;
-
-int rs_track_frame_at(const rs_track *track, double s, rs_track_frame *frame);
-int rs_track_rails_at(const rs_track *track, double s, double *rails);
-void rs_track_pose_of(const rs_track_frame *first, const rs_track_frame *second, double V, const double *offset1,
-                      const double *offset2, rs_track_pose *pose);
-void rs_track_limits(const rs_track *track, double *start, double *end);
-int rs_track_kinks(const rs_track *track, const double **kinks);
-int rs_track_jumps(const rs_track *track, const double **jumps);
-double rs_track_next_kink(const rs_track *track, double s);
-
-int rs_track_frames(const rs_track *track, int n, const double *s, rs_track_frame *frames, int *failed);
-int rs_track_rails(const rs_track *track, int n, const double *s, double *rails, int *failed);
-int rs_track_poses(const rs_track *track, int n, const double *s1, const double *s2, const double *V,
-                   const double *offset1, const double *offset2, rs_track_pose *poses, int *failed);
-
-rs_track *rs_track_create(int pieces, const double *joint, const rs_track_piece *piece, int kinks, const double *kink,
-                          int jumps, const double *jump);
-int rs_track_add_rails(rs_track *track, double start, double step, int count, const double *coefficients,
-                       const double *after);
-void rs_track_free(rs_track *track);
 
 enum { RS_SINGULAR = 30, RS_STOPPED = 31 };
 enum {

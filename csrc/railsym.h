@@ -83,7 +83,6 @@
  *   Returned  force, slopes  as rs_creep_forces
  *   Status    RS_OK, RS_BAD_SIZE (contacts, or a table without pieces or with least >= largest)
  *
- * rs_integrator_...    integration in time: contract in integrator.h; rs_travel_... track frames in motion: travel.h
  * rs_wheel_rail_...    wheel-rail forces in motion: contract in wheel_rail.h
  * rs_contact_cones     contact in closed form, for rs_wheel_rail_...: csrc/wheel_rail/cones.c
  * rs_track_...         the track's frames and rails: contracts in track.h
@@ -114,6 +113,7 @@
  *   Status    RS_OK, RS_OUT_OF_TABLE (count is 0), RS_NOT_FINITE (place)
  *   Notes     No allocation. Values are continuous in the place with continuous slopes; slopes are those of the interpolant.
  * rs_contact_lookup_many   the same n times; patch RS_ZONES x n; beyond n: -1 where all is well, RS_PLACE_SIZE where a place is not finite
+ * rs_integrator_...    integration in time: contract in integrator.h; rs_travel_... track frames in motion: travel.h
  */
 #ifndef RAILSYM_H
 #define RAILSYM_H

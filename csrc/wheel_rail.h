@@ -11,7 +11,7 @@
  *                        The shapes its wheels point to are kept, not copied, and only read.
  *             creep      copied with its coefficients: law, grid, material, Kalker's coefficients over ln(a/b)
  *   Returned  the object with all its work memory, or NULL (no memory, n <= 0, unknown law or kind of contact, a grid
- *             below 1 x 1, no pieces); free with rs_wheel_rail_free
+ *             below 1 x 1, no pieces, the law of exact theory without its table); free with rs_wheel_rail_free
  * rs_wheel_rail_rows   forces of all wheels
  *   Given     q u      all coordinates of the model and their rates, unchanged; only those of the wheelsets are read
  *             V        m/s, speed of the track frames along their x; > 0; the creepages are slips over V

@@ -7,9 +7,7 @@
 Names are imported when they are first used, so that importing railsym costs next to nothing.
 """
 
-import sys
-from importlib import import_module
-from types import ModuleType
+from railsym.lazy import lazy
 
 _MODULE_OF = {
     "ChannelWriter": "results",
@@ -49,34 +47,14 @@ _MODULE_OF = {
 }
 _SUBMODULES = ("criteria", "dampers", "nonlinear", "plots", "results", "simulation", "track")
 
-__all__ = [*_MODULE_OF, *_SUBMODULES, "__version__"]
+_get, __dir__, _names = lazy(__name__, _MODULE_OF, _SUBMODULES)
+__all__ = [*_names, "__version__"]
 
 
 def __getattr__(name):
     if name == "__version__":
         from importlib.metadata import version
 
-        value = version("railsym")
-    elif name in _MODULE_OF:
-        value = getattr(import_module(f"railsym.{_MODULE_OF[name]}"), name)
-    elif name in _SUBMODULES:
-        return import_module(f"railsym.{name}")
-    else:
-        raise AttributeError(f"module 'railsym' has no attribute {name!r}; it offers {', '.join(__all__)}")
-    globals()[name] = value
-    return value
-
-
-def __dir__():
-    return sorted({*globals(), *__all__})
-
-
-class _Package(ModuleType):
-    """A public function keeps its place when the module of the same name (`railsym.critical_speed`) is imported."""
-
-    def __setattr__(self, name, value):
-        if not (name in _MODULE_OF and isinstance(value, ModuleType)):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package
+        globals()[name] = version("railsym")
+        return globals()[name]
+    return _get(name)

@@ -83,6 +83,8 @@ class Integrator:
 
     def set_kinks(self, times):
         """Times (s, increasing) where steps end and begin anew."""
+        if (np.diff(times) < 0.0).any():
+            raise ModelError("kinks: the times (s) must increase")
         _check(lib.rs_integrator_kinks(self._pointer, len(times), _floats(times)), "kinks")
 
     def set_channels(self, channels):

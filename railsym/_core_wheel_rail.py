@@ -111,6 +111,10 @@ class WheelRailCore:
         settings = ffi.new("rs_creep_settings *", {k: v for k, v in creep.items() if k not in ("c", "law")})
         settings.law, settings.pieces = getattr(lib, CREEP_LAWS[creep["law"]]), len(coefficients)
         settings.c = _doubles(coefficients)
+        if creep["law"] == "exact":
+            from railsym._core_exact import creep_table
+
+            settings.table = creep_table()
         wr = lib.rs_wheel_rail_create(self.count, table, settings)
         if wr == ffi.NULL:
             raise ContactError(f"wheel-rail forces of {self.count} wheelsets cannot be made: at least one wheelset, a grid of at least 1 x 1 "

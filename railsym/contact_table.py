@@ -44,6 +44,11 @@ class OutOfTableError(ContactError):
         self.wheel, self.quantity, self.value, self.limits, self.time = wheel, quantity, value, limits, time
         scale, unit = _UNITS[quantity]
         at = "" if time is None else f" at t = {time:.6g} s"
+        inside = limits[0] <= value <= limits[1]         # the range holds for the wheel as a whole; this posture ends sooner
+        if inside:
+            super().__init__(f"{wheel}: at a lateral shift of {scale * value:.4g} {unit} in this posture it meets the rail at an end of its profile{at}; "
+                             "the wheel is off the rail, or a profile too short")
+            return
         what = {"lateral shift": "the wheel is off the rail, or its profile too short", "roll": "the wheelset rolls more than the table covers",
                 "penetration": "the wheel is pressed into the rail deeper than the table goes"}[quantity]
         super().__init__(f"{wheel}: {quantity} {scale * value:.4g} {unit} is outside the contact table [{scale * limits[0]:.4g}, "

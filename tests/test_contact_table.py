@@ -5,6 +5,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from oracles.half_space import HalfSpace, wheel_on_rail
 from oracles.profile_pairs import HALF, RADIUS, circle, cone, cone_on_round_edges, over_the_axis
 
@@ -248,3 +250,26 @@ def test_table_is_small_and_kept():
     assert pair().table() is pair().table()
     assert pair().table().nbytes < 4e6
     assert rs.ContactTable is type(pair().table())
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(y=st.floats(-14e-3, 14e-3), roll=st.floats(-5e-3, 5e-3), depth=st.floats(-1e-3, 1.5e-4), yaw=st.floats(-0.02, 0.02), log_step=st.floats(-9.0, -6.0))
+def test_any_place_gives_finite_continuous_patches_or_says_why_not(y, roll, depth, yaw, log_step):
+    """Through lift and re-contact: where the wheel touches, less a depth; a small step changes the load by what its largest slope allows."""
+    wheel, step = pair().table().right, 10.0**log_step
+    try:
+        touching, _ = wheel.under_load([y], 1e-3, roll, yaw)
+        places = np.array([y, y + step]), roll, touching[0] + depth + step * np.array([0.0, 1.0]), yaw
+        found = wheel.lookup(*places)
+    except OutOfTableError as error:
+        # off the rail, or through the flange the penetration is more than the depth says
+        assert error.quantity in ("lateral shift", "penetration")
+        return
+    values = np.array([getattr(found, name) for name in QUANTITIES])
+    slopes = np.array([found.slopes[name] for name in QUANTITIES])
+    assert np.isfinite(values).all() and np.isfinite(slopes).all()
+    assert (found.load >= 0.0).all() and ((found.count > 0) == (found.load.sum(axis=1) > 0.0)).all()
+    if depth < -1e-5:
+        assert not found.count.any()
+    stiffest = 3e9 + 1.5 * np.abs(slopes[0, ..., [0, 2]]).sum(axis=(0, 2)).max()       # N/m: of this pair, and of these places
+    assert abs(np.diff(found.load.sum(axis=1))[0]) <= stiffest * step + 1e-6

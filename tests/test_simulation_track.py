@@ -122,3 +122,52 @@ def test_poses_and_motions_are_used():
     track = UniformTrack(1.0 / 400.0)
     pair = Model(BOGIE).bushing_pairs
     assert np.abs(relative_poses(track, 30.0, pair)["dD"]).max() > 0.0 and body_motion(track, 30.0, 0.0, 9.81)["w2"] == 30.0 / 400.0
+
+
+def test_slow_wheelsets_follow_their_rails():
+    """At 4 m/s a wheelset's height and roll are those of the rails under it: what comes from the track arrives at the right wheel."""
+    track = Track.straight(60.0).with_irregularity("erri_b176_low", seed=1, fade=3.0)
+    sim = Simulation(BOGIE, speed=4.0, track=track, contact=CONES, channels=["s", "wheelset?.z", "wheelset?.roll", "wheelset?.y"], rate=50.0)
+    sim.run(10.0)
+    run = sim.result()
+    for wheelset in (body for body in BOGIE.bodies if body.kind == "wheelset"):
+        rails = track.rails(run["s"] + wheelset.position[0])
+        height, name = 0.5 * (rails.left_z + rails.right_z), wheelset.name
+        assert np.std(height) > 5e-4
+        np.testing.assert_allclose(run[f"{name}.z"], height, atol=0.05 * np.abs(height).max())
+        # the cone rolls by the cross level, and by its own lateral shift against the rails
+        shift = run[f"{name}.y"] - 0.5 * (rails.left_y + rails.right_y)
+        roll = (rails.right_z - rails.left_z) / 1.5 - 0.1 * shift / (0.75 - 0.46 * 0.1)
+        np.testing.assert_allclose(run[f"{name}.roll"], roll, atol=0.08 * np.abs(roll).max())
+
+
+@pytest.mark.parametrize("speed", [20.0, [(0.0, 20.0), (0.5, 26.0)]])
+def test_free_body_flies_straight_past_a_transition(speed):
+    """Nothing touches it: seen from a frame that turns, cants, climbs and speeds up, its motion in space stays uniform."""
+    from oracles import free_bodies
+    from oracles.stepping import integrator
+
+    from railsym import _core
+    from railsym._core_integrator import Travel
+    from railsym.simulation import SpeedProfile
+
+    body, track, profile = free_bodies.rigid_body(), Track([Straight(4.0), Transition(12.0), Curve(80.0, 60.0, 0.1)]), SpeedProfile.of(speed)
+    model = Model(free_bodies.vehicle(body))
+    travel = Travel(track.core.pointer, [0.0], profile.pieces, 0.0, keep=track)
+    travel.add_bodies(model.assembly, _core.kernels()["rigid_body"].number, [0])
+    offset = np.array([0.0, *body.position[1:]])
+
+    def place(time, q):
+        frame = track.core.frames(np.array([float(profile.place(time))]))[0]
+        return frame["place"] + frame["attitude"] @ (offset + q[:3])
+
+    error = []
+    for step in (1e-3, 5e-4):
+        it = integrator(model, step, tolerance=1e-8)
+        it.set_travel(travel)
+        it.set_kinks(np.sort(np.append(profile.when(track.kinks[track.kinks > 0.0]), 0.5)))
+        assert it.start(0.0, np.zeros(6), np.zeros(6)) == 0
+        it.set_channels([])
+        assert it.run(round(1.0 / step), 1, np.empty((2000, 0)))[0] == 0
+        error.append(np.abs(place(1.0, it.state()[0]) - place(0.0, np.zeros(6)) - [20.0, 0.0, 0.0]).max())
+    assert error[1] < 5e-4 and np.log2(error[0] / error[1]) > 1.7

@@ -59,6 +59,17 @@ def test_pencil_is_linear_in_its_seed():
         np.testing.assert_allclose(both, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
 
 
+def test_pencil_of_the_tabulated_law():
+    """Its second derivatives jump at the knots of its spline, up to eight of which lie under the difference: 3e-4 of a slope."""
+    forces = wheelset(TWO_ZONES, law="exact", damping=2.0, friction=0.25, kalker_weight=0.8)
+    for state in states():
+        for seed, steps in (((1.0, 0.0), [5e-7, 5e-7, 5e-7, 1e-5, 5e-7, 1e-3]), ((0.0, 1.0), [2e-4] * 6)):
+            _, blocks = rows_of(forces, state, seed)
+            expected = differences(forces, state, seed, np.array(steps))
+            scale = np.maximum(np.abs(expected).max(axis=0), 1.0)
+            np.testing.assert_allclose(blocks[0] / scale, expected / scale, rtol=0, atol=3e-4)
+
+
 @pytest.mark.parametrize("law", ["fastsim", "fastrip"])
 def test_pencil_of_laws_with_cells(law):
     """Their forces have slopes that jump by a cell's weight where a cell begins to slip: on 60 x 60 cells the chord over

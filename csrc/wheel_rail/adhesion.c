@@ -57,6 +57,7 @@ RS_INLINE void normalise(const rs_wheel_rail *wr, const rs_adhesion_input *in, s
 	to->slip = RS_ZERO + wr->creep.slip;
 	to->strips = wr->creep.strips;
 	to->cells = wr->creep.cells;
+	to->table = wr->creep.table;
 }
 
 /* dh/dk at constant u. */

@@ -24,7 +24,8 @@ static rs_lookup *lookup_of(int kind)
 
 static int fit(int wheelsets, const rs_wheelset *wheelset, const rs_creep_settings *creep)
 {
-	if (wheelsets <= 0 || creep->strips < 1 || creep->cells < 1 || creep->pieces < 1 || !rs_creep_law_at(creep->law))
+	if (wheelsets <= 0 || creep->strips < 1 || creep->cells < 1 || creep->pieces < 1 || !rs_creep_law_at(creep->law) ||
+	    (creep->law == RS_CREEP_EXACT && !creep->table))
 		return 0;
 	for (int k = 0; k < 2 * wheelsets; k++)
 		if (!lookup_of(wheelset[k / 2].wheel[k % 2].kind) || !wheelset[k / 2].wheel[k % 2].shape)

@@ -9,9 +9,7 @@ Functions take a `railsym.Run`, or arrays of time and signal. Limits are data (`
 mark; no verdict is given on a value that is only recalled. Names are imported when they are first used.
 """
 
-import sys
-from importlib import import_module
-from types import ModuleType
+from railsym.lazy import lazy
 
 _MODULE_OF = {
     "Assessed": "limits",
@@ -35,27 +33,4 @@ _MODULE_OF = {
     "weighting": "weighting",
 }
 
-__all__ = [*_MODULE_OF]
-
-
-def __getattr__(name):
-    if name not in _MODULE_OF:
-        raise AttributeError(f"module 'railsym.criteria' has no attribute {name!r}; it offers {', '.join(__all__)}")
-    value = getattr(import_module(f"railsym.criteria.{_MODULE_OF[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__():
-    return sorted({*globals(), *__all__})
-
-
-class _Package(ModuleType):
-    """A public function keeps its place when the module of the same name (`railsym.criteria.comfort`) is imported."""
-
-    def __setattr__(self, name, value):
-        if not (name in _MODULE_OF and isinstance(value, ModuleType)):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package
+__getattr__, __dir__, __all__ = lazy(__name__, _MODULE_OF)

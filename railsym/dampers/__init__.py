@@ -8,7 +8,7 @@
 Names are imported when they are first used.
 """
 
-from importlib import import_module
+from railsym.lazy import lazy
 
 _MODULE_OF = {
     "CleanRecord": "record",
@@ -21,6 +21,7 @@ _MODULE_OF = {
     "clean": "cleaning",
     "clean_all": "cleaning",
     "damper_toml": "toml_output",
+    "compare": "verdict:verdict",
     "identify": "fit",
     "put_into": "toml_output",
     "read_records": "reading",
@@ -29,20 +30,4 @@ _MODULE_OF = {
     "virtual_bench": "bench",
 }
 
-__all__ = [*_MODULE_OF, "compare"]
-
-
-def __getattr__(name):
-    if name == "compare":
-        from railsym.dampers.verdict import verdict
-
-        return verdict
-    if name not in _MODULE_OF:
-        raise AttributeError(f"module 'railsym.dampers' has no attribute {name!r}; it offers {', '.join(__all__)}")
-    value = getattr(import_module(f"railsym.dampers.{_MODULE_OF[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__():
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__, __all__ = lazy(__name__, _MODULE_OF)

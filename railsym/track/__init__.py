@@ -8,7 +8,7 @@
 Names are imported when they are first used.
 """
 
-from importlib import import_module
+from railsym.lazy import lazy
 
 _MODULE_OF = {
     "Curve": "sections",
@@ -30,16 +30,4 @@ _MODULE_OF = {
     "tracks": "reading",
 }
 
-__all__ = list(_MODULE_OF)
-
-
-def __getattr__(name):
-    if name not in _MODULE_OF:
-        raise AttributeError(f"module 'railsym.track' has no attribute {name!r}; it offers {', '.join(__all__)}")
-    value = getattr(import_module(f"railsym.track.{_MODULE_OF[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__():
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__, __all__ = lazy(__name__, _MODULE_OF)
