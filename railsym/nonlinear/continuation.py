@@ -12,7 +12,11 @@ from railsym.nonlinear.orbit import LENGTH, Orbit, Shooting
 from railsym.nonlinear.rolling import FlowError
 
 _FIRST = 0.05      # of 1 mm: amplitude of the first orbit off a Hopf point
-_SMALLEST, _LARGEST = 2e-3, 0.5
+_FIRST_AMPLITUDES = 0.05, 0.2, 0.5   # mm: the next where contact and creep law have corners nearer to the centre
+_ENOUGH = 5        # orbits of a branch that has left the Hopf point
+_LEAPS = 0.1, 0.3  # steps past a corner, with a new matrix
+_SHORTENED = 4     # times that a step is cut to 0.4 of it
+_SHORTEST, _LARGEST = 5e-3, 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,18 +86,34 @@ def from_hopf(system, hopf, speeds, progress=None, points=200, speed_scale=2.0):
     speed_scale : float
         m/s that count as 1 mm.
     """
+    best = None
+    for first in _FIRST_AMPLITUDES:
+        branch = _off_hopf(system, hopf, first, speeds, progress, points, speed_scale)
+        if branch is not None and (best is None or len(branch.orbits) > len(best.orbits)):
+            best = branch
+        if best is not None and len(best.orbits) >= min(_ENOUGH, points):
+            return best
+    if best is None:
+        raise ConvergenceError(f"no periodic motion was found near the linear critical speed of {hopf.speed:.6g} m/s: give a finer step (dt), or "
+                               "contact and creep law are not smooth near the centre")
+    return best
+
+
+def _off_hopf(system, hopf, first, speeds, progress, points, speed_scale):
+    """The branch from its orbit of amplitude ``first``, mm; None where that is not found."""
     shooting = Shooting(system, hopf.frequency, speed_scale)
     shooting.set_steps(2.0 * np.pi / hopf.frequency)
     step = np.concatenate([hopf.shape.real / shooting.scale, [0.0, 0.0]])
-    step /= np.sqrt(shooting.weight @ step**2)
+    step /= shooting.length(step)
     base = shooting.join(hopf.equilibrium, 2.0 * np.pi / hopf.frequency, hopf.speed)
-    x = base + _FIRST * step
     phase = (1j * hopf.shape).real / shooting.scale
-    found = shooting.solve(x, phase / np.linalg.norm(phase), shooting.weight * step)
-    if found is None:
-        raise ConvergenceError(f"no periodic motion was found near the linear critical speed of {hopf.speed:.6g} m/s: give a finer step (dt), or "
-                               "contact and creep law are not smooth near the centre")
-    return _follow(_Track(shooting, found, found - base), speeds, "linear critical speed", progress, points)
+    try:
+        found = shooting.solve(base + first * step, phase / np.linalg.norm(phase), shooting.weight * step)
+        if found is None:
+            return None
+        return _follow(_Track(shooting, found, found - base), speeds, "linear critical speed", progress, points)
+    except FlowError:
+        return None
 
 
 def from_motion(system, z, period, speed, speeds, along, progress=None, points=200, speed_scale=2.0):
@@ -160,17 +180,17 @@ class _Track:
 
     def advance(self):
         """Find the next point; False where even the smallest step does not lead on, FlowError where no motion can be followed there."""
-        failure = None
-        while self.step >= _SMALLEST:
+        failure, tried = None, [(self.step * 0.4**k, False) for k in range(_SHORTENED)]
+        for step, fresh in (*tried, *((leap, True) for leap in _LEAPS)):
             before = self.shooting.system.integrations
             try:
-                found = self.correct(self.points[-1], self.direction, self.step, fresh=self.step < 4.0 * _SMALLEST)
+                found = self.correct(self.points[-1], self.direction, step, fresh)
             except FlowError as error:
                 found, failure = None, error
             if found is not None:
+                self.step = step
                 self._accept(found, self.shooting.system.integrations - before)
                 return True
-            self.step *= 0.4
         if failure is not None:
             raise failure
         return False
@@ -189,6 +209,7 @@ class _Track:
         self.orbits.append(orbit)
         if cost <= 8:
             self.step = min(_LARGEST, 1.5 * self.step)
+        self.step = max(self.step, _SHORTEST)
 
     def turned(self):
         """Whether the speed has an extremum at the last point but one."""
