@@ -84,6 +84,6 @@ def test_branch_from_a_simulated_motion_reaches_the_same_fold():
     z = np.array([3e-3, 0.0, 0.0])
     for _ in range(30):
         z, _ = system.flow(z, 2.0 * np.pi / OMEGA, 209)
-    found = from_motion(system, z, 2.0 * np.pi / OMEGA, 17.0, (10.0, 22.0), -1.0, points=40)
+    found = from_motion(system, z, 2.0 * np.pi / OMEGA, 17.0, (10.0, 22.0), -1.0, points=12)
     assert found.folds[0].speed == pytest.approx(V0 - B**2 / (4.0 * C), abs=1e-4)
     assert found.stable[0] and not found.stable[-1]

@@ -111,7 +111,10 @@ def _off_hopf(system, hopf, first, speeds, progress, points, speed_scale):
         found = shooting.solve(base + first * step, phase / np.linalg.norm(phase), shooting.weight * step)
         if found is None:
             return None
-        return _follow(_Track(shooting, found, found - base), speeds, "linear critical speed", progress, points)
+        track = _Track(shooting, found, found - base)
+        tangent = shooting.tangent(track.monodromy, shooting.phase(found))
+        track.direction = tangent * np.sign((shooting.weight * tangent) @ (found - base))
+        return _follow(track, speeds, "linear critical speed", progress, points)
     except FlowError:
         return None
 
