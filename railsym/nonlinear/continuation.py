@@ -113,7 +113,7 @@ def _off_hopf(system, hopf, first, speeds, progress, points, speed_scale):
             return None
         track = _Track(shooting, found, found - base)
         tangent = shooting.tangent(track.monodromy, shooting.phase(found))
-        track.direction = tangent * np.sign((shooting.weight * tangent) @ (found - base))
+        track.direction = tangent * np.sign((shooting.weight * tangent) @ step)  # step has no part in speed: towards larger amplitudes
         return _follow(track, speeds, "linear critical speed", progress, points)
     except FlowError:
         return None
