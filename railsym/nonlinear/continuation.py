@@ -184,7 +184,7 @@ class _Track:
     def advance(self):
         """Find the next point; False where even the smallest step does not lead on, FlowError where no motion can be followed there."""
         failure, tried = None, [(self.step * 0.4**k, False) for k in range(_SHORTENED)]
-        for step, fresh in (*tried, *((leap, True) for leap in _LEAPS)):
+        for step, fresh in (*tried, *((step, True) for step in (tried[1][0], tried[3][0], *_LEAPS))):
             before = self.shooting.system.integrations
             try:
                 found = self.correct(self.points[-1], self.direction, step, fresh)
