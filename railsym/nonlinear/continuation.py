@@ -184,7 +184,10 @@ class _Track:
     def advance(self):
         """Find the next point; False where even the smallest step does not lead on, FlowError where no motion can be followed there."""
         failure, tried = None, [(self.step * 0.4**k, False) for k in range(_SHORTENED)]
-        for step, fresh in (*tried, *((step, True) for step in (tried[1][0], tried[3][0], *_LEAPS))):
+        again = [(step, True) for step in (tried[1][0], tried[3][0], *_LEAPS)]
+        for k, (step, fresh) in enumerate((*tried, *again)):
+            if k == len(tried):
+                self.direction = self._tangent()
             before = self.shooting.system.integrations
             try:
                 found = self.correct(self.points[-1], self.direction, step, fresh)
@@ -197,6 +200,12 @@ class _Track:
         if failure is not None:
             raise failure
         return False
+
+    def _tangent(self):
+        """Direction of the branch at the last point, from its matrix: where the branch has bent since the last secant."""
+        shooting, last = self.shooting, self.points[-1]
+        tangent = shooting.tangent(self.monodromy, shooting.phase(last))
+        return tangent * np.sign((shooting.weight * tangent)[:-2] @ self.direction[:-2])
 
     def correct(self, x, direction, step, fresh=False):
         """The point of the branch near x + step direction, or None."""
