@@ -32,6 +32,8 @@ def main():
     pendolino = rs.load_vehicle("pendolino").configured("AS_K")
     save(rs.bifurcation(pendolino, contact=table, speeds=(80.0, 120.0), disturbance=2e-3, ramp_steps=17, longest=20.0, continuation=False),
          "limit_cycle_pendolino")
+    save(rs.bifurcation(rs.load_vehicle("pendolino").configured("noAS_K"), contact=table, speeds=(61.0, 71.0), disturbance=2e-3, ramp_steps=11,
+                        longest=20.0, points=40), "limit_cycle_pendolino_noAS")
     if len(sys.argv) > 1:
         save(rs.bifurcation(rs.load_vehicle("cooperrider"), contact=rs.load_contact_table(sys.argv[1]), speeds=(55.0, 150.0), law=LAW, disturbance=6e-3,
                             ramp_steps=20, points=110), "limit_cycle_cooperrider")
