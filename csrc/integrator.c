@@ -85,6 +85,15 @@ int rs_integrator_start(rs_integrator *it, double time, const double *q, const d
 	return it->report.status = rs_integrator_begin(it, time);
 }
 
+int rs_integrator_set_step(rs_integrator *it, double step)
+{
+	if (!(step > 0.0) || !isfinite(step))
+		return RS_BAD_SIZE;
+	it->step = step;
+	it->factored = 0.0;
+	return RS_OK;
+}
+
 int rs_integrator_hold(rs_integrator *it, int count, const int *coordinate, const double *stiffness,
                        const double *damping, const double *mass)
 {

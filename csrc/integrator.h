@@ -26,6 +26,7 @@
  * rs_integrator_start    state at a time; accelerations and rates of internal states follow from it
  *   Status    RS_OK, RS_SINGULAR (mass matrix), RS_NOT_FINITE, RS_NOT_CONVERGED (rate of an internal state),
  *             and those of the track and the wheels
+ * rs_integrator_set_step another step (s), from the next start on; RS_BAD_SIZE where it is not positive and finite
  * rs_integrator_hold     soft springs and dampers on single coordinates, and the force that gives a mass (kg) the
  *                        acceleration of the track frames; replaces those before
  * rs_integrator_force    n applied generalised forces, N or N m, constant in a step; write to it between runs

@@ -297,6 +297,7 @@ typedef int (*rs_controller)(void *context, double time, const double *q, const 
 rs_integrator *rs_integrator_create(rs_model *model, int second, int blocks, const int *block, double step,
                                     double rho, double tolerance);
 void rs_integrator_free(rs_integrator *integrator);
+int rs_integrator_set_step(rs_integrator *integrator, double step);
 int rs_integrator_start(rs_integrator *integrator, double time, const double *q, const double *u);
 int rs_integrator_hold(rs_integrator *integrator, int count, const int *coordinate, const double *stiffness,
                        const double *damping, const double *mass);

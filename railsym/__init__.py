@@ -27,6 +27,7 @@ _MODULE_OF = {
     "Vehicle": "vehicle",
     "WheelRail": "wheel_rail",
     "animate": "plots.animation",
+    "bifurcation": "nonlinear",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",
@@ -47,7 +48,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("criteria", "dampers", "plots", "results", "simulation", "studies", "track")
+_SUBMODULES = ("criteria", "dampers", "nonlinear", "plots", "results", "simulation", "studies", "track")
 
 _get, __dir__, _names = lazy(__name__, _MODULE_OF, _SUBMODULES)
 __all__ = [*_names, "__version__"]

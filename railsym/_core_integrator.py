@@ -65,6 +65,11 @@ class Integrator:
         """Begin at a time (s) from q and u (n,); returns the status, see `report`."""
         return lib.rs_integrator_start(self._pointer, time, *(_doubles(_vector(v, self.size, w)) for v, w in ((q, "q"), (u, "u"))))
 
+    def set_step(self, step):
+        """Steps of another length (s), from the next `start` on."""
+        _check(lib.rs_integrator_set_step(self._pointer, step), f"step of {step} s")
+        self.step = step
+
     def hold(self, coordinates, stiffness, damping, mass):
         """Hold coordinates by springs (N/m) and dampers (N s/m) to where they are zero, and pull masses (kg) along as the frames speed up."""
         _check(lib.rs_integrator_hold(self._pointer, len(coordinates), _integers(coordinates), _floats(stiffness),

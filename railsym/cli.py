@@ -10,6 +10,7 @@ import re
 import sys
 
 from railsym.cli_arguments import missing_vehicle, vehicle_first
+from railsym.cli_bifurcation_parser import add_bifurcation
 from railsym.cli_damper import add_damper
 from railsym.cli_pair import add_contact
 from railsym.cli_profiles import add_parser as add_profiles
@@ -18,7 +19,7 @@ from railsym.cli_switch import add_switch
 from railsym.cli_values import CommandError, criterion, numbers
 from railsym.errors import RailsymError
 
-_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate", "switch")
+_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate", "switch", "bifurcation")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -84,7 +85,8 @@ def _parsed(arguments):
     if arguments and not arguments[0].startswith("-") and arguments[0] not in _COMMANDS:
         raise CommandError(f"there is no command {arguments[0]!r}{_near(arguments[0], _COMMANDS)}; there are {', '.join(_COMMANDS)}")
     parser, commands = _parser()
-    taking = _taking_values(commands.choices[arguments[0]]) if arguments and arguments[0] in ("stability", "modes", "simulate", "switch") else {}
+    valued = ("stability", "modes", "simulate", "switch", "bifurcation")
+    taking = _taking_values(commands.choices[arguments[0]]) if arguments and arguments[0] in valued else {}
     try:
         options, unknown = parser.parse_known_args(vehicle_first(arguments, taking))
     except CommandError as error:
@@ -119,6 +121,7 @@ def _parser():
     add_profiles(commands, _typed, _add_output)
     add_simulate(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_simulate", "run"))
     add_switch(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_switch", "run"))
+    add_bifurcation(commands, _typed, _add_output).set_defaults(run=_run("cli_bifurcation", "run"))
     return parser, commands
 
 

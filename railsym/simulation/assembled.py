@@ -109,12 +109,14 @@ class Assembled:
     def _hold(self, drive):
         if drive not in ("held", "free"):
             raise SimulationError(f"drive {drive!r}: 'held' holds the car body softly to its place along the track, 'free' lets the vehicle roll")
+        self.holds = [], [], []  # coordinates, stiffness N/m, damping N s/m
         if drive == "free":
             return
         body = max(self.vehicle.bodies, key=lambda b: b.mass)
         mass = sum(b.mass + sum(box.mass for box in b.axleboxes) for b in self.vehicle.bodies)
         omega = 2.0 * np.pi * DRIVE_FREQUENCY
-        self.integrator.hold([self.model.topology.start[body.name]], [mass * omega ** 2], [2.0 * mass * omega], [mass])
+        self.holds = [self.model.topology.start[body.name]], [mass * omega ** 2], [2.0 * mass * omega]
+        self.integrator.hold(*self.holds, [mass])
 
     def _add_travel(self):
         core = None if self.track is None else self.track.core
