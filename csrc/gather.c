@@ -44,6 +44,8 @@ static void find_block_runs(rs_group *group, const rs_kernel_info *info, int blo
 					run->source[lane] = source_of(group, info, block * lanes + lane, c, part, n);
 			}
 			run->slot[run->length++] = (short)slot;
+			for (int k = run->length; k < RS_RUN; k++)
+				run->slot[k] = run->slot[0];
 		}
 	}
 	group->first_run[block + 1] = *runs;
@@ -87,15 +89,14 @@ static RS_ALWAYS_INLINE void transpose(const double *state, const int *source, f
 	to[3] = __builtin_shuffle(high02, high13, odd);
 }
 
-/* A run of three reads one number more, and leaves it. */
+/* A shorter run reads what follows it; the first input is stored last, over what went to its slot. */
 static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, double *in)
 {
 	for (int half = 0; half < RS_LANES; half += 4) {
 		four to[4];
 		transpose(state, run->source + half, to);
-		for (int k = 0; k < 4; k++)
-			if (k < run->length)
-				*(four *)(in + run->slot[k] * RS_LANES + half) = to[k];
+		for (int k = RS_RUN - 1; k >= 0; k--)
+			*(four *)(in + run->slot[k] * RS_LANES + half) = to[k];
 	}
 }
 #else

@@ -8,7 +8,7 @@
 /* Up to four inputs that stand side by side in the state in every lane: yaw, roll, pitch; or one that does not. */
 enum { RS_RUN = 4 };
 typedef struct {
-	short length, slot[RS_RUN];
+	short length, slot[RS_RUN];  /* unused ones: the first */
 	int source[8];        /* lanes, where in the state the first one is */
 } rs_run;
 
