@@ -92,11 +92,15 @@ static RS_ALWAYS_INLINE void transpose(const double *state, const int *source, f
 /* A shorter run reads what follows it; the first input is stored last, over what went to its slot. */
 static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, double *in)
 {
-	for (int half = 0; half < RS_LANES; half += 4) {
-		four to[4];
-		transpose(state, run->source + half, to);
-		for (int k = RS_RUN - 1; k >= 0; k--)
-			*(four *)(in + run->slot[k] * RS_LANES + half) = to[k];
+	double *to[RS_RUN];
+	four left[RS_RUN], right[RS_RUN];
+	for (int k = 0; k < RS_RUN; k++)
+		to[k] = in + run->slot[k] * RS_LANES;
+	transpose(state, run->source, left);
+	transpose(state, run->source + 4, right);
+	for (int k = RS_RUN - 1; k >= 0; k--) {
+		*(four *)to[k] = left[k];
+		*(four *)(to[k] + 4) = right[k];
 	}
 }
 #else
@@ -112,9 +116,11 @@ RS_CLONES
 void rs_group_gather(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
 {
 	double *restrict in = group->in + (size_t)block * (size_t)(info->inputs * RS_LANES);
-	for (int k = group->first_run[block]; k < group->first_run[block + 1]; k++)
-		if (group->run[k].length == 1)
-			copy_one(model->state, group->run + k, in);
+	const double *restrict state = model->state;
+	const rs_run *restrict run = group->run + group->first_run[block], *end = group->run + group->first_run[block + 1];
+	for (; run < end; run++)
+		if (run->length == 1)
+			copy_one(state, run, in);
 		else
-			copy_run(model->state, group->run + k, in);
+			copy_run(state, run, in);
 }

@@ -24,7 +24,7 @@ static const double FRACTION = 1e-3, LEAST_TOLERANCE = 1e-6;
 
 /* A step of one iteration sees no contraction: factors serve less well from step to step, and rounding may look like quick
  * convergence. So what was seen last is taken to grow, until a second iteration looks again. */
-static const double AGEING = 1.5, LEAST = 1e-4;
+static const double AGEING = 1.2, LEAST = 1e-4;
 enum { ITERATIONS = 5, SETS = 8 };
 
 /* Factors of an iteration: those there are, with new slopes of the wheels, all new. */
@@ -104,23 +104,26 @@ static void accept(rs_integrator *it, double h)
 	it->before_step = h;
 }
 
-/* Largest change; infinite where one is not a number. */
+/* Largest change of a body's coordinate, infinite where any is not a number. What an internal state leaves wrong is a force, and
+ * the change that it makes of the bodies is its measure. */
 RS_CLONES
 static double size_of(const rs_integrator *it)
 {
 	double largest[8] = {0.0}, sum[8] = {0.0}, all = 0.0, most = 0.0;
-	int n = it->n, k = 0;
+	int n = it->n, second = it->second, k = 0;
 	const double *d = it->d;
-	for (; k + 8 <= n; k += 8)
+	for (; k + 8 <= second; k += 8)
 		for (int i = 0; i < 8; i++) {
 			double size = fabs(d[k + i]);
 			largest[i] = size > largest[i] ? size : largest[i];
 			sum[i] += size;
 		}
-	for (; k < n; k++) {
+	for (; k < second; k++) {
 		most = fabs(d[k]) > most ? fabs(d[k]) : most;
 		all += fabs(d[k]);
 	}
+	for (; k < n; k++)
+		all += fabs(d[k]);
 	for (int i = 0; i < 8; i++) {
 		most = largest[i] > most ? largest[i] : most;
 		all += sum[i];
