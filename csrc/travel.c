@@ -119,6 +119,7 @@ int rs_travel_pairs(rs_travel *travel, rs_model *model, int kernel, int count, c
 		    || instance[k] >= model->groups[kernel].count)
 			return RS_BAD_INDEX;
 		rs_moved_pair *own = pair + travel->pairs++;
+		travel->still = 0;
 		*own = (rs_moved_pair){.first = first, .second = second, .to = input_of(model, kernel, instance[k], slot)};
 		memcpy(own->offset1, offsets + 6 * k, sizeof own->offset1);
 		memcpy(own->offset2, offsets + 6 * k + 3, sizeof own->offset2);
@@ -220,6 +221,7 @@ static int set_frames(rs_travel *travel, double s)
 		if (!status)
 			rs_track_straight_at(travel->track, at, &travel->straight[k].from, &travel->straight[k].to);
 	}
+	travel->moves = moves;
 	return status;
 }
 
@@ -233,7 +235,8 @@ int rs_travel_set(rs_travel *travel, double time)
 		return status;
 	for (int k = 0; k < travel->bodies; k++)
 		set_body(travel, travel->body + k);
-	for (int k = 0; travel->track && k < travel->pairs; k++)
+	for (int k = 0; travel->track && !(travel->still && !travel->moves) && k < travel->pairs; k++)
 		set_pair(travel, travel->pair + k);
+	travel->still = !travel->moves;
 	return RS_OK;
 }
