@@ -15,7 +15,7 @@ from railsym.contact import LinearContact
 
 _AMPLITUDE = 3e-3            # m, at which equivalent conicity is quoted (EN 14363, EN 15302)
 _SPACING_TOLERANCE = 1e-3    # m, between the tape circles of the pair and the contact spacing of the vehicle file
-_ONLY_PAIR = ("inclination", "gauge", "flange_back_distance", "smoothing")
+_ONLY_PAIR = ("inclination", "gauge", "flange_back_distance", "smoothing", "load")
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +77,8 @@ def add_contact(command, typed):
     for name, text in {"gauge": "track gauge, with --rail (default 1435mm)", "flange-back-distance": "of the wheelsets, with --wheel (default 1360mm)",
                        "smoothing": "root-mean-square distance that the curve may keep from measured profiles (default 0mm)"}.items():
         command.add_argument(f"--{name}", type=typed(quantity, "m", name.replace("-", " ")), metavar="LENGTH", help=text)
+    command.add_argument("--load", type=typed(quantity, "N", "load"), metavar="FORCE",
+                         help="vertical load of a wheel, such as 60kN, with --wheel and --rail: elastic contact (default: rigid)")
 
 
 def plain_contact(options):
@@ -126,7 +128,7 @@ def pair_contacts(options, vehicles):
     _check_spacing(pair, vehicles)
     more = {} if options.friction is None else {"friction": options.friction}
     amplitudes = [_AMPLITUDE] if options.amplitude is None else options.amplitude
-    return PairContacts(pair, tuple(pair.linear_contact(float(a), **more) for a in amplitudes))
+    return PairContacts(pair, tuple(pair.linear_contact(float(a), options.load, **more) for a in amplitudes))
 
 
 def _wheelsets(vehicles):

@@ -246,7 +246,7 @@ class ContactParameters:
     rail_curvature: float
 
 
-def contact_parameters(pair, amplitude=3e-3):
+def contact_parameters(pair, amplitude=3e-3, load=None):
     """Equivalent conicity, contact-angle and roll parameter of a pair at an amplitude.
 
     Over y = A sin t the first harmonics are kept, which is the best straight line in the mean square under a sinusoidal motion:
@@ -260,6 +260,9 @@ def contact_parameters(pair, amplitude=3e-3):
     pair : ContactPair
     amplitude : float
         m.
+    load : float, optional
+        Vertical load of each wheel, N: elastic contact. The curvature is then that of the Hertzian ellipse with the mean a/b of the
+        patches, all of it given to the wheel.
 
     Returns
     -------
@@ -270,13 +273,13 @@ def contact_parameters(pair, amplitude=3e-3):
     ContactError
         Where the pair has no periodic motion at this amplitude.
     """
-    found = equivalent_conicity(pair, float(amplitude))
+    found = equivalent_conicity(pair, float(amplitude), load=load)
     if found.message:
         raise ContactError(found.message)
-    return harmonic_parameters(pair, float(amplitude), float(found.conicity[0]), float(found.centre[0]))
+    return harmonic_parameters(pair, float(amplitude), float(found.conicity[0]), float(found.centre[0]), load)
 
 
-def harmonic_parameters(pair, amplitude, conicity, centre=0.0):
+def harmonic_parameters(pair, amplitude, conicity, centre=0.0, load=None):
     """`contact_parameters` for a conicity and centre of the motion that are known.
 
     Returns
@@ -284,22 +287,40 @@ def harmonic_parameters(pair, amplitude, conicity, centre=0.0):
     ContactParameters
     """
     t = 2.0 * np.pi * (np.arange(_PHASES) + 0.5) / _PHASES
-    contact = pair.contact(centre + amplitude * np.sin(t))
+    y = centre + amplitude * np.sin(t)
     half_spacing = 0.5 * pair.tape_circle_spacing
 
     def harmonic(value):
         return 2.0 * half_spacing / amplitude * float(np.mean(value * np.sin(t)))
 
-    wheel, rail = (0.5 * float(np.mean(getattr(contact.left, name) + getattr(contact.right, name))) for name in ("wheel_curvature", "rail_curvature"))
-    return ContactParameters(amplitude, conicity, harmonic(0.5 * (contact.right.contact_angle - contact.left.contact_angle)),
-                             -harmonic(contact.roll), wheel, rail)
+    if load is None:
+        contact = pair.contact(y)
+        left, right = contact.left.contact_angle, contact.right.contact_angle
+        curvature = (0.5 * float(np.mean(getattr(contact.left, name) + getattr(contact.right, name))) for name in ("wheel_curvature", "rail_curvature"))
+    else:
+        contact = pair.table().contact(y, load, with_roll=True)
+        left, right = (side.mean("angle") for side in (contact.left, contact.right))
+        curvature = _curvature(contact, pair.mean_radius), 0.0
+    return ContactParameters(amplitude, conicity, harmonic(0.5 * (right - left)), -harmonic(contact.roll), *curvature)
 
 
-def linear_contact(pair, amplitude=3e-3, **more):
+def _curvature(contact, radius):
+    """Relative curvature across the track (1/m) of the Hertzian ellipse whose ln(a/b) is the mean of the patches'.
+
+    B/A = R_D(0, a^2, b^2)/R_D(0, b^2, a^2) with A = 1/(2 radius) (railsym/hertz.py).
+    """
+    from scipy.special import elliprd
+
+    logs = [np.log(side.mean("a") / side.mean("b")) for side in (contact.left, contact.right)]
+    square = np.exp(2.0 * np.mean(logs))
+    return float(elliprd(0.0, square, 1.0) / elliprd(0.0, 1.0, square)) / radius
+
+
+def linear_contact(pair, amplitude=3e-3, load=None, **more):
     """`LinearContact` of a pair at an amplitude; see `ContactPair.linear_contact`."""
     from railsym.contact import LinearContact
 
-    found = contact_parameters(pair, amplitude)
+    found = contact_parameters(pair, amplitude, load)
     if not found.wheel_curvature + found.rail_curvature > 0.0 and not {"wheel_transverse_radius", "rail_transverse_radius"} <= set(more):
         raise ContactError(f"the mean curvatures {found.wheel_curvature:.4g} and {found.rail_curvature:.4g} 1/m of wheel and rail at an amplitude of "
                            f"{1e3 * amplitude:g} mm make no convex contact; give wheel_transverse_radius and rail_transverse_radius")

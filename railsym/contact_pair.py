@@ -180,13 +180,15 @@ class ContactPair:
 
         return equivalent_conicity(self, amplitude, with_roll=with_roll, load=load)
 
-    def linear_contact(self, amplitude=3e-3, **more):
+    def linear_contact(self, amplitude=3e-3, load=None, **more):
         """`LinearContact` with conicity, contact-angle and roll parameter, and radii of this pair at an amplitude.
 
         Parameters
         ----------
         amplitude : float
             Of the lateral motion, m; also that of the quasi-linear creep forces.
+        load : float, optional
+            Vertical load of each wheel, N: parameters of elastic contact; without it contact is rigid.
         **more
             Other fields of `LinearContact`, such as friction; they win.
 
@@ -196,7 +198,7 @@ class ContactPair:
         """
         from railsym.conicity import linear_contact
 
-        return linear_contact(self, amplitude, **more)
+        return linear_contact(self, amplitude, load, **more)
 
 
 def inner_side(rail):

@@ -98,9 +98,8 @@ def _core_table(eta, closure, columns, radius, half_spacing):
 
 
 def _fields(columns, slope_angle, normal):
-    """Stiffness, place, radius, slope angle, semi-axes over the root of the penetration, tangent of the slope, at a normal penetration (m); each (shifts,)."""
+    """Stiffness, place, radius, slope angle, semi-axes over the root of the penetration, at a normal penetration (m); each (shifts,)."""
     penetration = columns["penetration_m"]
     values = (columns["normal_load_N"] / penetration**1.5, columns["lateral_distance_m"], columns["rolling_radius_m"],
-              np.broadcast_to(slope_angle[:, None], penetration.shape), columns["a_m"] / np.sqrt(penetration), columns["b_m"] / np.sqrt(penetration),
-              np.broadcast_to(np.tan(slope_angle)[:, None], penetration.shape))
+              np.broadcast_to(slope_angle[:, None], penetration.shape), columns["a_m"] / np.sqrt(penetration), columns["b_m"] / np.sqrt(penetration))
     return [np.array([np.interp(normal, p, v) for p, v in zip(penetration, value)]) for value in values]

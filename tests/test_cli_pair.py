@@ -147,3 +147,10 @@ def test_a_file_may_stand_after_a_list_and_a_misspelt_vehicle_is_told(capsys, tm
     assert status == 0 and "without_anti_yaw_dampers" not in out
     status, out, err = run(capsys, "stability", "--configuration", "AS_K", "pendolin")
     assert (status, out) == (2, "") and "VEHICLE is missing" in err and "'pendolin'" in err and "railsym stability VEHICLE --configuration" in err
+
+
+def test_elastic_contact_under_a_load(capsys, pair):
+    status, out, err = run(capsys, *BOGIE, *PAIR, "--inclination", "1:40", "--load", "60kN")
+    assert (status, err) == (0, "") and f"3 mm: {pair.linear_contact(3e-3, 60e3).conicity:.3f}" in out
+    status, _, err = run(capsys, *BOGIE, "--load", "60kN")
+    assert status == 2 and "--load goes with profiles" in err

@@ -273,3 +273,18 @@ def test_any_place_gives_finite_continuous_patches_or_says_why_not(y, roll, dept
         assert not found.count.any()
     stiffest = 3e9 + 1.5 * np.abs(slopes[0, ..., [0, 2]]).sum(axis=(0, 2)).max()       # N/m: of this pair, and of these places
     assert abs(np.diff(found.load.sum(axis=1))[0]) <= stiffest * step + 1e-6
+
+
+def test_linear_contact_under_load():
+    # at a vanishing load the parameters are those of rigid contact; under 60 kN the conicity is the elastic one, and patches are rounder at small shifts
+    rigid, light, loaded = pair().linear_contact(3e-3), pair().linear_contact(3e-3, 100.0), pair().linear_contact(3e-3, LOAD)
+    for name in ("conicity", "contact_angle_parameter", "roll_parameter"):
+        assert getattr(light, name) == pytest.approx(getattr(rigid, name), rel=0.02), name
+    assert loaded.conicity == pair().equivalent_conicity(3e-3, load=LOAD).conicity[0]
+    assert pair().linear_contact(1e-3, LOAD).contact_angle_parameter < 0.7 * pair().linear_contact(1e-3).contact_angle_parameter
+
+
+def test_curvature_of_the_elastic_linear_contact_is_that_of_circles():
+    circles = over_the_axis(circle("wheel", 600.0, "up", 50.0), circle("rail", 300.0, "up", 30.0))
+    found = circles.linear_contact(5e-4, 50e3)
+    assert 1.0 / found.wheel_transverse_radius == pytest.approx(1.0 / 0.3 - 1.0 / 0.6, rel=0.03) and found.rail_transverse_radius == np.inf

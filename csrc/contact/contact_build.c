@@ -19,6 +19,8 @@
 #define FIRST_LEVEL 0.3 /* of the first tau after 0: where the limit tau -> 0 is taken */
 #define REACH 1.2       /* zones further than this many largest penetrations from contact are not computed */
 #define MISPLACED 2e-6  /* m: places on the wheel may be off by this */
+#define NEEDED 1.8      /* the same for the nodes of a zone: beside those within reach, for their cubics */
+#define COARSE 2        /* levels that may be too shallow for the points of the rail */
 #define SIDEWAYS 2      /* nodes beside those within reach, which their cubics need */
 
 enum { NOTHING, OWN, END }; /* what a zone has at a node: no contact of its own, one, one at the end of a profile */
@@ -161,11 +163,19 @@ static int fill_levels(builder *b, int zone, rs_zone part, const closed *own, in
 	double length[RS_STRIPS] = {0.0}; /* of the strips at the level before, over sqrt(normal) */
 	double last = tau_of(t, t->levels - 1), above = own->drop - b->posture.gap_drop;
 	rs_limit_search(&b->posture, t->deepest * last * last / own->cosine + above);
+	int known = 0;
 	for (int level = 1; level < t->levels; level++) {
 		double tau = tau_of(t, level), normal = t->deepest * tau * tau, depth = normal / own->cosine + above;
-		if (rs_patch_fields(&b->posture, &b->influence, b->modulus, part, depth, normal, length, field_node(t, zone, shift, roll, level)) != RS_OK)
+		int status = rs_patch_fields(&b->posture, &b->influence, b->modulus, part, depth, normal, length, field_node(t, zone, shift, roll, level));
+		if (status == RS_OK && !known)
+			known = level;
+		else if (status != RS_OK && known)
 			return RS_NOT_CONVERGED;
 	}
+	if (!known || known > COARSE)
+		return RS_NOT_CONVERGED;
+	for (int level = 1; level < known; level++) /* too small a patch for the points of the rail: as the first that can be seen */
+		memcpy(field_node(t, zone, shift, roll, level), field_node(t, zone, shift, roll, known), RS_FIELDS * sizeof(double));
 	double *ghost = field_node(t, zone, shift, roll, 0);
 	for (int k = 0; k < RS_FIELDS; k++) /* a parabola through the first three */
 		ghost[k] = 3.0 * (ghost[RS_FIELDS + k] - ghost[2 * RS_FIELDS + k]) + ghost[3 * RS_FIELDS + k];
@@ -187,7 +197,7 @@ static void fill_node(builder *b, int zone, int shift, int roll)
 	*kind = (char)zones[zone].kind;
 	if (*kind != OWN)
 		return;
-	if (zones[zone].drop - b->posture.drop > 2.0 * REACH * b->table->deepest / zones[zone].cosine) {
+	if (zones[zone].drop - b->posture.drop > NEEDED * b->table->deepest / zones[zone].cosine) {
 		*kind = NOTHING; /* beyond reach: it only goes along with its neighbours */
 		return;
 	}

@@ -9,7 +9,7 @@
 
 #include "rows.h"
 
-#define INLINE RS_INLINED
+#define INLINE static RS_ALWAYS_INLINE
 #define LEAST_TAU 1e-6 /* less is no contact: the load is below 1e-18 of that at the deepest level */
 
 typedef struct {
@@ -147,7 +147,7 @@ INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw
  * then 1 to 4. d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
 INLINE void chain(const double (*f)[RS_FIELDS], const slopes *tau, const slopes *p, double root, double radius, double (*out)[RS_FIELDS])
 {
-	const double power[RS_FIELDS] = {p->v * root, 1.0, 1.0, 1.0, root, root, 1.0};
+	const double power[RS_FIELDS] = {p->v * root, 1.0, 1.0, 1.0, root, root};
 	const double slope[RS_FIELDS] = {1.5 * root, 0.0, 0.0, 0.0, 0.5 / root, 0.5 / root};
 	for (int k = 0; k < RS_FIELDS; k++) {
 		double by_tau = power[k] * f[BY_TAU][k], by_p = slope[k] * f[VALUE][k];
@@ -165,13 +165,16 @@ INLINE void take(const double (*from)[RS_FIELDS], int field, double *to)
 		to[k] = from[k][field];
 }
 
-/* The contact of a yawed wheel: ahead by r t psi, inward by r t psi^2, below by r t^2 psi^2/2 (t: tangent of its slope to the axle). */
-INLINE void turn(double yaw, const double *tangent, rs_patch *patch)
+/* The contact of a yawed wheel: ahead by r t psi, inward by r t psi^2, below by r t^2 psi^2/2, t the tangent of its slope to the
+ * axle: of the angle itself, so that the normal meets the axle. */
+INLINE void turn(double yaw, const double *slope_angle, rs_patch *patch)
 {
-	double t = tangent[0], r = patch->radius[0], square = yaw * yaw, arm = r * t, half = 0.5 * arm * t, arm_slope[5], half_slope[5];
+	double t = tan(slope_angle[0]), t_angle = 1.0 + t * t, r = patch->radius[0], square = yaw * yaw, arm = r * t, half = 0.5 * arm * t;
+	double arm_slope[5], half_slope[5];
 	for (int k = 1; k < 5; k++) {
-		arm_slope[k] = patch->radius[k] * t + r * tangent[k];
-		half_slope[k] = 0.5 * (arm_slope[k] * t + arm * tangent[k]);
+		double dt = t_angle * slope_angle[k];
+		arm_slope[k] = patch->radius[k] * t + r * dt;
+		half_slope[k] = 0.5 * (arm_slope[k] * t + arm * dt);
 	}
 	patch->x[0] = arm * yaw;
 	patch->across[0] -= arm * square;
@@ -200,7 +203,7 @@ INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, c
 {
 	double root = sqrt(p->v), deepest = sqrt(t->deepest), r0 = t->wheel_radius;
 	row rows[FIELD_SLOPES];
-	double out[5][RS_FIELDS], tangent[5];
+	double out[5][RS_FIELDS];
 	slopes tau = {root / deepest, {0.0}};
 	for (int k = 0; k < 4; k++)
 		tau.d[k] = p->d[k] / (2.0 * deepest * root);
@@ -213,8 +216,7 @@ INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, c
 	take((const double (*)[RS_FIELDS])out, RS_ANGLE, patch->angle);
 	take((const double (*)[RS_FIELDS])out, RS_LENGTH, patch->a);
 	take((const double (*)[RS_FIELDS])out, RS_WIDTH, patch->b);
-	take((const double (*)[RS_FIELDS])out, RS_TANGENT, tangent);
-	turn(place[3], tangent, patch);
+	turn(place[3], patch->angle, patch);
 	patch->angle[0] -= place[1];
 	patch->angle[2] -= 1.0;
 	patch->zone = zone;

@@ -25,7 +25,7 @@
 #include "../railsym.h"
 
 enum { RS_FIELDS = 8, RS_CLOSURE = 4 };
-enum { RS_STIFFNESS, RS_ACROSS, RS_RADIUS, RS_ANGLE, RS_LENGTH, RS_WIDTH, RS_TANGENT }; /* fields of a zone */
+enum { RS_STIFFNESS, RS_ACROSS, RS_RADIUS, RS_ANGLE, RS_LENGTH, RS_WIDTH }; /* fields of a zone */
 
 typedef struct {
 	double start, step;

@@ -116,7 +116,6 @@ static void gather(const rs_strip_patch *strips, const strip_place *place, const
 	field[RS_ACROSS] = across / load;
 	field[RS_RADIUS] = radius / load;
 	field[RS_ANGLE] = atan2(aside, down);
-	field[RS_TANGENT] = aside / down;
 	field[RS_LENGTH] = a / root;
 	field[RS_WIDTH] = area / (PI * a) / root;
 }

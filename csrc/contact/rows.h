@@ -7,12 +7,10 @@
 #include "contact_table.h"
 
 #if defined(__GNUC__)
-#define RS_INLINED static inline __attribute__((always_inline))
 typedef double row __attribute__((vector_size(8 * RS_FIELDS), may_alias));
 typedef double half_row __attribute__((vector_size(8 * RS_CLOSURE), may_alias));
 #define ADD_SCALED(sum, w, node) ((sum) += (w) * (node))
 #else
-#define RS_INLINED static inline
 typedef struct {
 	double v[RS_FIELDS];
 } row;

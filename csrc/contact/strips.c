@@ -17,12 +17,13 @@
  */
 #include <math.h>
 
+#include "../dispatch.h"
 #include "../railsym.h"
 #include "strips.h"
 
 #define PI 3.14159265358979323846
 #define LEAST_LENGTH 0.1    /* of the width: H of shorter strips is that of this one (their load is negligible) */
-#define TOLERANCE 3e-4      /* on a_j, of the largest */
+#define TOLERANCE 1e-3      /* on a_j, of the largest */
 #define SLACK 1e-4          /* of the largest u: overlap that adds a strip to the contact */
 #define RELAXED 1e-6        /* on a_j^2, of the largest */
 enum { FULL_ROUNDS = 15, MOST_ROUNDS = 60, MOST_SETS = 12, MOST_SWEEPS = 2000 };
@@ -34,7 +35,7 @@ typedef struct {
 } workspace;
 
 /* Equation (1). */
-static double pressure_gradient(const rs_strip_patch *p)
+static RS_ALWAYS_INLINE double pressure_gradient(const rs_strip_patch *p)
 {
 	double longest = 0.0, sum = 0.0;
 	for (int j = 0; j < RS_STRIPS; j++) {
@@ -77,7 +78,7 @@ static void fill(const rs_influence *table, const rs_strip_patch *p, workspace *
 }
 
 /* z of the active strips, by elimination; the diagonal is the largest of its row. */
-static void solve_active(const double (*m)[RS_STRIPS], const double *u, const int *active, double *z)
+static RS_ALWAYS_INLINE void solve_active(const double (*m)[RS_STRIPS], const double *u, const int *active, double *z)
 {
 	double lu[RS_STRIPS][RS_STRIPS + 1];
 	int index[RS_STRIPS], n = 0;
@@ -106,7 +107,7 @@ static void solve_active(const double (*m)[RS_STRIPS], const double *u, const in
 }
 
 /* Strips that pull leave the contact; those that overlap without pressure come back. 0 when nothing changed. */
-static int revise(const rs_strip_patch *p, workspace *w, double slack)
+static RS_ALWAYS_INLINE int revise(const rs_strip_patch *p, workspace *w, double slack)
 {
 	int changed = 0;
 	for (int i = 0; i < RS_STRIPS; i++)
@@ -146,7 +147,7 @@ static int relax(const rs_strip_patch *p, workspace *w)
 	return RS_NOT_CONVERGED;
 }
 
-static int solve_contact(const rs_strip_patch *p, workspace *w)
+static RS_ALWAYS_INLINE int solve_contact(const rs_strip_patch *p, workspace *w)
 {
 	double largest = 0.0;
 	for (int i = 0; i < RS_STRIPS; i++)
@@ -164,7 +165,7 @@ static int solve_contact(const rs_strip_patch *p, workspace *w)
 	return status;
 }
 
-int rs_strip_contact(const rs_influence *table, rs_strip_patch *p)
+RS_CLONES int rs_strip_contact(const rs_influence *table, rs_strip_patch *p)
 {
 	workspace w;
 	for (int i = 0; i < RS_STRIPS; i++)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -122,8 +123,9 @@ def _accelerations(run, markers):
         body, position = run.vehicle.body(body_name), np.asarray(position, dtype=float)
         if position.shape != (3,) or not np.isfinite(position).all():
             raise SimulationError(f"marker {name!r}: its position must be three finite numbers (m), got {position}")
+        reading, raw = _accelerometer(run, body, position - body.position)
         for axis, word in enumerate(_AXES):
-            make, raw = _accelerometer(run, body, position - body.position, axis)
+            make = partial(_component, reading, axis)
             where = "[" + ", ".join(f"{x:.4g}" for x in position) + "] m"
             yield Recipe(Channel(f"{name}.{word}", "m/s^2", "as an accelerometer on the body reads, less its reading at rest", where), raw, make)
 
@@ -137,19 +139,27 @@ def _frame_points(vehicle):
     return frame_markers(vehicle) if any(body.kind == "wheelset" for body in vehicle.bodies) and len(vehicle.bodies) > 1 else {}
 
 
-def _accelerometer(run, body, arm, axis):
+def _component(reading, axis, time, *columns):
+    return reading(time, *columns)[:, axis]
+
+
+def _accelerometer(run, body, arm):
+    """Function (time, columns) -> (n, 3) of what a point's accelerometer reads, kept for the three axes, and its raw numbers."""
     first, turns = run.model.topology.start[body.name], body.kind == "rigid_body"
     numbers = [first + k for k in range(6 if turns else 5)]
     raw = tuple((kind, k, 0, 0) for kind in ("position", "rate", "acceleration") for k in numbers)
     ahead, offset = body.position[0], np.array([0.0, *body.position[1:]])
+    last = [None, None]
 
-    def make(time, *columns):
-        states = np.zeros((3, 6, len(time)))
-        states[:, :len(numbers)] = np.reshape(columns, (3, len(numbers), len(time)))
-        frame = frame_motion(run.track, run.speed, time, ahead, run.vehicle.gravity)
-        return accelerometer(*states, arm, offset, frame, run.vehicle.gravity)[:, axis]
+    def reading(time, *columns):
+        if last[0] is not time:
+            states = np.zeros((3, 6, len(time)))
+            states[:, :len(numbers)] = np.reshape(columns, (3, len(numbers), len(time)))
+            frame = frame_motion(run.track, run.speed, time, ahead, run.vehicle.gravity)
+            last[:] = time, accelerometer(*states, arm, offset, frame, run.vehicle.gravity)
+        return last[1]
 
-    return make, raw
+    return reading, raw
 
 
 def _elements(run):

@@ -21,6 +21,7 @@ from railsym.simulation.speed import SpeedProfile
 RHO = 0.9          # of the generalised-alpha scheme: what is left in a step of a motion much faster than it
 TOLERANCE = 1e-2   # m/s^2: on irregular track a hundredth of what a step of 1 ms leaves wrong (docs/simulation.md)
 _BLOCK = 0.1       # s of motion between two looks at the keyboard and the progress bar
+_ENOUGH = 500      # samples that wait before channels are made of them (and written)
 
 
 class Controls:
@@ -142,7 +143,7 @@ class Simulation:
         if status or sampled:
             self.ending = ending_of(self.parts, status or sampled)
             raise SimulationError(f"the run cannot begin: {self.ending}")
-        self._times, self._values = [np.zeros(1)], [self.recorder.values(np.zeros(1), row[None])]
+        self._times, self._values, self._waiting = [np.zeros(1)], [self.recorder.values(np.zeros(1), row[None])], []
 
     @property
     def time(self):
@@ -151,17 +152,28 @@ class Simulation:
 
     def steps(self, count):
         """Take ``count`` steps in C; returns times and values of the samples on the way, or fewer with `ending` set."""
+        self._advance(count)
+        return self._keep()
+
+    def _advance(self, count):
+        """Take ``count`` steps in C; samples wait as they are."""
         integrator = self.parts.integrator
         done = integrator.report.steps
         rows = (done + count) // self.every - done // self.every
         samples = np.empty((rows, len(self.recorder.raw)))
         status, sampled = integrator.run(count, self.every, samples)
         times = (done // self.every + 1 + np.arange(sampled)) * self.every * self.dt
-        values = self.recorder.values(times, samples[:sampled])
-        self._times.append(times)
-        self._values.append(values)
+        self._waiting.append((times, samples[:sampled]))
         if status:
             self.ending = ending_of(self.parts, status)
+
+    def _keep(self):
+        """Channels of the samples that wait; returns their times and values."""
+        waiting, self._waiting = self._waiting, []
+        times, samples = (np.concatenate(part) for part in zip(*waiting, strict=True))
+        values = self.recorder.values(times, samples)
+        self._times.append(times)
+        self._values.append(values)
         return times, values
 
     def run(self, duration, *, controllers=(), progress=False, writer=None):
@@ -191,14 +203,22 @@ class Simulation:
                         if done % period == 0:
                             function(controls)
                     count = min(left, block, *(period - done % period for _, period in calls))
-                    times, values = self.steps(count)
-                    if writer is not None and len(times):
-                        writer.write(times, values)
+                    self._advance(count)
+                    if sum(len(times) for times, _ in self._waiting) >= _ENOUGH:
+                        self._hand_over(writer)
                     bar.update(count)
         except KeyboardInterrupt:
             self.ending = Ending("interrupted", time=self.time, distance=float(self.parts.speed.place(self.time)))
+        self._hand_over(writer)
         if self.ending.reason == "running":
             self.ending = Ending("completed", time=self.time, distance=float(self.parts.speed.place(self.time)))
+
+    def _hand_over(self, writer):
+        """Make channels of what waits, and write them."""
+        if self._waiting:
+            times, values = self._keep()
+            if writer is not None and len(times):
+                writer.write(times, values)
 
     def _check_duration(self, duration):
         if not 0.0 < duration < np.inf:
