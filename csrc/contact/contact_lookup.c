@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "../trigonometry.h"
 #include "rows.h"
 
 #define INLINE static RS_ALWAYS_INLINE
@@ -231,7 +232,9 @@ INLINE void read_patch_values(const rs_contact_table *t, int zone, const cell *s
 	row value;
 	read_field_value(t, zone, shift, roll, &level, &value);
 	const double *f = (const double *)&value;
-	double tangent = f[RS_TANGENT], arm = f[RS_RADIUS] * tangent, half = 0.5 * arm * tangent;
+	double sine, cosine;
+	rs_sine_cosine(f[RS_ANGLE], &sine, &cosine);
+	double tangent = sine / cosine, arm = f[RS_RADIUS] * tangent, half = 0.5 * arm * tangent;
 	patch->load[0] = p * root * f[RS_STIFFNESS];
 	patch->x[0] = arm * yaw;
 	patch->across[0] = f[RS_ACROSS] - arm * square;
