@@ -50,7 +50,7 @@ def explicit(vehicle, table, track, condensed):
     own, rolling = peer(vehicle, table, SPEED, condensed)
     h = LARGEST
     while h >= SMALLEST:
-        go, record = run(own, rolling, track, 100.0, 0.5, h)
+        go, record = run(own, rolling, track, -own.offsets.max(), 0.5, h)
         go()
         if np.isfinite(record).all() and np.abs(record).max() < 0.05:
             return go, h
