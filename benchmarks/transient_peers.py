@@ -148,7 +148,7 @@ vehicle = rs.load_vehicle("pendolino")
 track = rs.Track.straight(4000.0).with_irregularity("erri_b176_low", seed=1)
 table = rs.ContactPair("S1002", "UIC60", inclination=1 / 40, gauge=1.435).table()
 simulation = rs.Simulation(vehicle, speed=60.0, track=track, contact=table, law="fastsim")
-names = simulation.available[:100]
+names = list(simulation.available)[:100]
 run = rs.simulate(vehicle, speed=60.0, duration=60.0, track=track, contact=table, law="fastsim", channels=names, rate=200.0)
 assert run.status == "completed"
 """

@@ -30,6 +30,7 @@ rs_travel *rs_travel_create(const rs_track *track, int frames, const double *x, 
 	travel->frames = frames;
 	travel->pieces = pieces;
 	travel->gravity = gravity;
+	travel->written[0] = NAN;
 	travel->x = copied(x, frames);
 	travel->time = copied(time, pieces);
 	travel->place = copied(place, pieces);
@@ -93,6 +94,7 @@ int rs_travel_bodies(rs_travel *travel, rs_model *model, int kernel, const int *
 	if (!body)
 		return RS_NO_MEMORY;
 	travel->body = body;
+	travel->written[0] = NAN;
 	for (int k = 0; k < count; k++) {
 		if (frame[k] < 0 || frame[k] >= travel->frames)
 			return RS_BAD_INDEX;
@@ -145,6 +147,7 @@ int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame)
 void rs_travel_steady(rs_travel *travel, int steady)
 {
 	travel->steady = steady;
+	travel->written[0] = NAN;
 }
 
 static double travelled(rs_travel *travel, double time)
@@ -215,13 +218,15 @@ static int set_frames(rs_travel *travel, double s)
 		double at = s + travel->x[k];
 		moves |= !(at >= travel->straight[k].from && at < travel->straight[k].to) || !on_a_straight(travel, 0, k);
 	}
+	if (moves)
+		travel->written[0] = NAN; /* also where a frame further on is off the track */
 	for (int k = 0; moves && k < travel->frames && !status; k++) {
 		double at = s + travel->x[k];
 		status = rs_track_frame_at(travel->track, at, travel->frame + k);
 		if (!status)
 			rs_track_straight_at(travel->track, at, &travel->straight[k].from, &travel->straight[k].to);
 	}
-	travel->moves = moves;
+	travel->still &= !moves;
 	return status;
 }
 
@@ -233,10 +238,13 @@ int rs_travel_set(rs_travel *travel, double time)
 		status = set_wheelset(travel, k, s + travel->x[travel->wheelset[k]]);
 	if (status)
 		return status;
-	for (int k = 0; k < travel->bodies; k++)
-		set_body(travel, travel->body + k);
-	for (int k = 0; travel->track && !(travel->still && !travel->moves) && k < travel->pairs; k++)
+	if (travel->V != travel->written[0] || travel->dV != travel->written[1])
+		for (int k = 0; k < travel->bodies; k++)
+			set_body(travel, travel->body + k);
+	travel->written[0] = travel->V;
+	travel->written[1] = travel->dV;
+	for (int k = 0; travel->track && !travel->still && k < travel->pairs; k++)
 		set_pair(travel, travel->pair + k);
-	travel->still = !travel->moves;
+	travel->still = 1;
 	return RS_OK;
 }

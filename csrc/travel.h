@@ -49,8 +49,9 @@ struct rs_travel {
 	double *time, *place, *start_speed, *acceleration;  /* pieces */
 	double gravity;
 	int steady;
-	int moves, still;         /* 0: all frames on one straight as before; 1: no pair has moved since it was written */
+	int still;                /* 1: no pair has moved since it was written */
 	double V, dV;             /* at the time last asked for */
+	double written[2];        /* V and dV in the inputs of bodies; NAN: they are to be written */
 	rs_moved_body *body;
 	rs_moved_pair *pair;
 	int *wheelset;            /* frames of the wheelsets */
