@@ -113,10 +113,12 @@ def wheel(q, u, p, side, rail_y, rail_z, table, start, step, numbers, force):
     depth = q[p + 2] - rail_z + side * half * roll - (low[0] + t * (high[0] - low[0]))
     if depth <= 0.0:
         return
-    stiffness, radius, angle = low[1] + t * (high[1] - low[1]), low[2] + t * (high[2] - low[2]), low[3] + t * (high[3] - low[3]) - side * roll
+    stiffness, radius = low[1] + t * (high[1] - low[1]), low[2] + t * (high[2] - low[2])
+    angle = low[3] + t * (high[3] - low[3]) - side * roll
     root = sqrt(depth)
     a, b = root * (low[4] + t * (high[4] - low[4])), root * (low[5] + t * (high[5] - low[5]))
-    c11, c22, c23, ks = low[6] + t * (high[6] - low[6]), low[7] + t * (high[7] - low[7]), low[8] + t * (high[8] - low[8]), low[9] + t * (high[9] - low[9])
+    c11, c22 = low[6] + t * (high[6] - low[6]), low[7] + t * (high[7] - low[7])
+    c23, ks = low[8] + t * (high[8] - low[8]), low[9] + t * (high[9] - low[9])
     cosine, sine = 1.0 - 0.5 * angle * angle, angle * (1.0 - angle * angle / 6.0)
     load, spin = stiffness * depth * root, u[p + 5]
     scale = G * a * b / (friction * load * V)

@@ -138,8 +138,8 @@ def against_scipy_on_table():
             if reached <= error:
                 break
         yield Figure(f"times faster than SciPy's {method}, contact table", spent / time, "", 30.0,
-                     f"{duration} s; error {1e6 * error:.2g} um, {method} {1e6 * reached:.2g} um with rtol {rtol:.0e}, {found.nfev} slopes, {spent:.3g} s",
-                     at_least=True)
+                     f"{duration} s; error {1e6 * error:.2g} um, {method} {1e6 * reached:.2g} um with rtol {rtol:.0e}, {found.nfev} slopes, "
+                     f"{spent:.3g} s", at_least=True)
 
 
 def memory():
