@@ -2,10 +2,12 @@
 """Draw the pictures of the README and of the documentation: ``python docs/make_images.py`` with railsym installed."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
+from PIL import Image
 
 import railsym as rs
 from railsym import plots
@@ -47,6 +49,7 @@ def main():
     save(plots.plot_profile_pair(pair, pair.contact(shift), conicities, title="S1002 on UIC60, inclination 1:40, gauge 1435 mm"), "profile_pair.png")
     track = rs.Track.s_curve(500, 200, transition=60, cant=0.1, kind="bloss").with_irregularity("erri_b176_low", seed=1)
     save(track.plot(title="S-curve of radius 500 m, cant 100 mm, Bloss transitions; ERRI B176 low, seed 1")["plan"], "track.png")
+    switch_images(without)
     run_images(vehicle, rs.ContactPair("S1002", "UIC60", inclination=1 / 40, gauge=1.435).table())
 
 
@@ -71,6 +74,27 @@ def run_images(vehicle, table):
     axes[1].set_xlabel("s of the vehicle's centre, m")
     axes[0].set_title("Pendolino at 25 m/s, curve of 600 m, cant 100 mm, S1002 on UIC60", fontsize="medium")
     save(axes, "transient_curve.png")
+
+
+def switch_images(vehicle):
+    """The switch study, amplitudes beside the quasi-linear theory, and a picture of an animation."""
+    from railsym.studies import SWITCH, switch_track
+    from railsym.studies.switch_run import CHANNELS, cross
+
+    study = rs.switch_study(vehicle)
+    save(study.plot(), "switch_study.png")
+    wide = rs.switch_study(vehicle, ratios=(0.80, 0.85, 0.875, 0.90, 0.925, 0.95, 0.975, 1.0, 1.05), threshold=False)
+    save(wide.plot_quasi_linear(), "switch_amplitude.png")
+    from railsym.plots.animation import animate, animation_channels
+
+    run = cross(vehicle, study.pair.table(deepest=6e-4), SWITCH, study.reference, reference=study.reference, after=3.4,
+                channels=[*CHANNELS, *animation_channels(vehicle)]).run
+    with TemporaryDirectory() as folder:
+        found = animate(run, vehicle, Path(folder) / "switch.gif", track=switch_track(SWITCH, 400.0), start=0.2, end=2.2)
+        print(found.message)
+        with Image.open(found.path) as pictures:
+            pictures.seek(13)
+            pictures.convert("RGB").quantize(48).save(HERE / "animation.png", optimize=True)
 
 
 if __name__ == "__main__":

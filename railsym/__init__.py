@@ -23,8 +23,10 @@ _MODULE_OF = {
     "Run": "results",
     "Simulation": "simulation",
     "Track": "track",
+    "SwitchStudy": "studies",
     "Vehicle": "vehicle",
     "WheelRail": "wheel_rail",
+    "animate": "plots.animation",
     "creep_forces": "creep",
     "creep_laws": "creep",
     "critical_speed": "critical_speed",
@@ -41,10 +43,11 @@ _MODULE_OF = {
     "sensitivity": "sensitivity",
     "simulate": "simulation",
     "stability_map": "stability_map",
+    "switch_study": "studies",
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("criteria", "dampers", "plots", "results", "simulation", "track")
+_SUBMODULES = ("criteria", "dampers", "plots", "results", "simulation", "studies", "track")
 
 _get, __dir__, _names = lazy(__name__, _MODULE_OF, _SUBMODULES)
 __all__ = [*_names, "__version__"]

@@ -13,14 +13,21 @@ from railsym.cli_arguments import missing_vehicle, vehicle_first
 from railsym.cli_damper import add_damper
 from railsym.cli_pair import add_contact
 from railsym.cli_profiles import add_parser as add_profiles
+from railsym.cli_simulate import add_simulate
+from railsym.cli_switch import add_switch
 from railsym.cli_values import CommandError, criterion, numbers
 from railsym.errors import RailsymError
 
-_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles")
+_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate", "switch")
 
 
 class _Parser(argparse.ArgumentParser):
     """A parser that raises instead of printing its usage and leaving."""
+
+    def __init__(self, *arguments, **options):
+        super().__init__(*arguments, **options)
+        # -20km/h is a value, to be refused by whoever knows why
+        self._negative_number_matcher = re.compile(r"-\.?\d\S*")
 
     def error(self, message):
         raise CommandError(f"{message}; see {self.prog} --help")
@@ -77,7 +84,7 @@ def _parsed(arguments):
     if arguments and not arguments[0].startswith("-") and arguments[0] not in _COMMANDS:
         raise CommandError(f"there is no command {arguments[0]!r}{_near(arguments[0], _COMMANDS)}; there are {', '.join(_COMMANDS)}")
     parser, commands = _parser()
-    taking = _taking_values(commands.choices[arguments[0]]) if arguments and arguments[0] in ("stability", "modes") else {}
+    taking = _taking_values(commands.choices[arguments[0]]) if arguments and arguments[0] in ("stability", "modes", "simulate", "switch") else {}
     try:
         options, unknown = parser.parse_known_args(vehicle_first(arguments, taking))
     except CommandError as error:
@@ -110,6 +117,8 @@ def _parser():
     listing.add_argument("--json", nargs="?", const="-", metavar="FILE", help="as JSON, to FILE or standard output")
     listing.set_defaults(run=_run("cli_modes", "list_vehicles"))
     add_profiles(commands, _typed, _add_output)
+    add_simulate(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_simulate", "run"))
+    add_switch(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_switch", "run"))
     return parser, commands
 
 

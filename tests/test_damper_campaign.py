@@ -1,38 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random campaigns of the second generator: closed-form curves, start transients, lag of either sign, coloured noise, jitter, drift."""
 
-import warnings
-
 import numpy as np
 import pytest
 
 from railsym.dampers import RecordError, clean_all, identify, read_records
-from railsym.dampers.models import curve_value
 from tests.oracles.bench_campaign import Bench, ClosedDamper, _noise, campaign, random_campaign
-
-MODEL = {"viscous": "viscous", "viscous curve": "viscous", "linear": "maxwell", "curve": "maxwell"}
-
-
-def cleaned(made):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return clean_all(read_records(made.records, units=made.units))
-
-
-def force_error(fit, made):
-    """Largest error of the damper's curve over the speeds that it had, of its peak."""
-    record, speed = fit.model.force_law_record(), np.linspace(*made.fastest, 401)
-    curve = record.get("damping_curve")
-    force = record["damping"] * speed + (0.0 if curve is None else curve_value(curve, speed))
-    wanted = made.damper.force(speed)
-    return np.abs(force - wanted).max() / np.abs(wanted).max()
-
-
-def stiffness_error(fit, made):
-    record, speed = fit.model.force_law_record(), np.linspace(0.0, made.ends, 101)
-    curve = record.get("stiffness_curve")
-    found = record["stiffness"] + (0.0 if curve is None else curve_value(curve, speed))
-    return np.abs(found / made.damper.stiffness(speed) - 1.0).max()
+from tests.oracles.damper_accuracy import MODEL, cleaned, force_error, stiffness_error
 
 
 def checked(seed, kind, noise, method="least_squares"):
@@ -44,7 +18,7 @@ def checked(seed, kind, noise, method="least_squares"):
 
 @pytest.mark.parametrize("method", ["energy", "least_squares"])
 @pytest.mark.parametrize("noise", [0.0, 0.02])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow), pytest.param(2, marks=pytest.mark.slow)])
 def test_constants(seed, noise, method):
     made, fit = checked(seed, "linear", noise, method)
     limit = 0.05 if noise else 0.01
@@ -52,17 +26,42 @@ def test_constants(seed, noise, method):
     assert fit.lag == pytest.approx(made.bench.lag, abs=3e-4)
 
 
-@pytest.mark.parametrize(("kind", "seed"), [("viscous curve", 1), ("curve", 1), ("curve", 3), ("nonlinear", 2), ("nonlinear", 5), ("asymmetric", 0)])
-@pytest.mark.parametrize("noise", [0.0, 0.02])
+QUICK = [("viscous curve", 1, 0.0), ("curve", 1, 0.02), ("nonlinear", 2, 0.0), ("nonlinear", 2, 0.02)]
+LONG = [(kind, seed, noise) for kind, seed in (("viscous curve", 1), ("curve", 3), ("nonlinear", 5), ("nonlinear", 13), ("nonlinear", 15), ("nonlinear", 33),
+                                               ("asymmetric", 0)) for noise in (0.0, 0.02)]
+
+
+@pytest.mark.parametrize(("kind", "seed", "noise"), [*QUICK, *(pytest.param(*one, marks=pytest.mark.slow) for one in LONG)])
 def test_curves(kind, seed, noise):
+    """Seeds 13, 15 and 33 have the corner of a blow-off valve, which a prior of small changes of slope rounds off."""
     made, fit = checked(seed, kind, noise)
     assert force_error(fit, made) < 0.03
     if made.damper.k is not None:
         assert stiffness_error(fit, made) < 0.03
-    assert fit.seconds < 20.0                                            # 0.1 to 0.6 s on a quiet machine
 
 
-@pytest.mark.parametrize(("kind", "model"), [("linear", "viscous"), ("curve", "viscous"), ("nonlinear", "maxwell")])
+@pytest.mark.slow
+def test_a_curve_that_the_tests_do_not_tell_is_said():
+    """Seed 29: friction, noise correlated over 20 samples; the end of the curve is 5 % off, its interval 7 % wide."""
+    made = random_campaign(29, "nonlinear", 0.02)
+    fit = identify(cleaned(made), "maxwell_nonlinear")
+    assert force_error(fit, made) > 0.03
+    assert "damping_curve is known to no better than" in fit.message
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [2, 20])
+def test_an_asymmetric_curve_by_the_energy_method(seed):
+    """The mean forces come with the curve, and the lag in turns with them; with those of the record it is 1 to 5 ms off."""
+    made = random_campaign(seed, "asymmetric", 0.02)
+    fit = identify(cleaned(made), "maxwell_nonlinear", "energy")
+    assert force_error(fit, made) < 0.08
+    assert fit.lag == pytest.approx(made.bench.lag, abs=5e-4)
+    assert "take least squares" in fit.message
+
+
+@pytest.mark.parametrize(("kind", "model"), [("linear", "viscous"), pytest.param("curve", "viscous", marks=pytest.mark.slow),
+                                             pytest.param("nonlinear", "maxwell", marks=pytest.mark.slow)])
 def test_a_wrong_model_is_named(kind, model):
     made = random_campaign(5, kind, 0.0)
     assert "wrong model" in identify(cleaned(made), model).message
@@ -116,11 +115,12 @@ LOW = [(f, a) for f in (0.25, 0.5, 1.0) for a in (0.5e-3, 1e-3, 2e-3)]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("tests", "c", "k"), [(WIDE, 4e5, 5e6), (LOW, 1e5, 1e7)])
-def test_intervals_cover_the_truth(tests, c, k):
-    """95 % intervals, 200 draws: a binomial deviation of 1.5 %."""
-    hits = draws(tests, c, k, 200, 0.0)
-    assert (hits > 0.895).all() and (hits < 0.995).all(), hits
+@pytest.mark.parametrize(("tests", "c", "k", "colour", "least"), [(WIDE, 4e5, 5e6, 0.0, 0.895), (WIDE, 4e5, 5e6, 0.95, 0.87),
+                                                                  (LOW, 1e5, 1e7, 0.0, 0.895), (LOW, 1e5, 1e7, 0.95, 0.82)])
+def test_intervals_cover_the_truth(tests, c, k, colour, least):
+    """95 % intervals, 200 draws: a binomial deviation of 1.5 to 2.4 %. Of strongly coloured noise they are somewhat too narrow."""
+    hits = draws(tests, c, k, 200, colour)
+    assert (hits > least).all() and (hits < 0.995).all(), hits
 
 
 def test_what_the_tests_do_not_tell_is_said():

@@ -14,13 +14,13 @@ from tests.oracles.damper_records import SHIPPED, SHIPPED_SENSORS
 def done(tmp_path_factory):
     folder = tmp_path_factory.mktemp("damper")
     status = main(["damper", "--model", "maxwell_nonlinear", "--plot", str(folder / "d.png"), "--write", str(folder / "d.toml"),
-                   "--json", str(folder / "d.json")])
+                   "--json", str(folder / "d.json"), "--map", str(folder / "map.png")])
     assert status == 0
     return folder
 
 
 def test_one_command_gives_picture_lines_and_numbers(done):
-    assert (done / "d.png").stat().st_size > 50_000
+    assert (done / "d.png").stat().st_size > 50_000 and (done / "map.png").stat().st_size > 50_000
     written = tomllib.loads((done / "d.toml").read_text())
     element = written["elements"]["anti_yaw_damper"]
     assert element["type"] == "maxwell" and element["series_stiffness_curve"] in written["curves"]
@@ -63,3 +63,22 @@ def test_errors_are_one_line(capsys, arguments, message):
     assert main(["damper", *arguments]) == 2
     shown = capsys.readouterr().err
     assert message in shown and shown.count("\n") == 1
+
+
+def test_the_map_shows_stiffness_and_phase_of_the_closed_form():
+    """Filled levels of a linear damper: the highest colour lies where |K| is highest, and a test's place is marked."""
+    import matplotlib.pyplot as plt
+    import numpy as np
+
+    from railsym.dampers import DamperModel, sweep
+    from railsym.plots.damper_map import plot_damper_map
+
+    model = DamperModel("maxwell", damping=4e5, series_stiffness=5e6)
+    axes = np.ravel(plot_damper_map(model))
+    for place, high, low in zip(axes[:2], (1e-6 * abs(model.dynamic_stiffness(10.0)), np.degrees(np.angle(model.dynamic_stiffness(0.2)))),
+                                (1e-6 * abs(model.dynamic_stiffness(0.2)), np.degrees(np.angle(model.dynamic_stiffness(10.0))))):
+        levels = np.concatenate([one.levels for one in place.collections if hasattr(one, "levels")])
+        step = np.diff(np.unique(levels)).min()
+        assert levels.min() == pytest.approx(low, abs=1.01 * step) and levels.max() == pytest.approx(high, abs=1.01 * step)
+    assert abs(sweep(model, 2.0, 1e-3).dynamic_stiffness[0, 0]) == pytest.approx(abs(model.dynamic_stiffness(2.0)), rel=1e-4)
+    plt.close("all")

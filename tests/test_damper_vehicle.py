@@ -62,3 +62,26 @@ def test_shipped_records_and_the_virtual_bench_agree():
         expected = late * model.describing_function(found.amplitude, found.frequency)
         # 1 % noise in displacement and force, some 900 samples: 0.07 % of deviation; 0.3 % of transient may be left
         assert found.dynamic_stiffness == pytest.approx(expected, rel=4e-3)
+
+
+def test_the_same_element_runs_in_the_transient(tmp_path):
+    """In a run of the whole vehicle the identified damper's force is its curve of the rate of its state, and its spring's share of the elongation."""
+    from railsym.dampers.models import curve_value
+
+    vehicle = rs.load_vehicle(put_into("pendolino", CURVED, tmp_path / "a.toml")).configured("AS_K")
+    names = [f"anti_yaw_damper.front_left.{part}" for part in ("force", "s", "s.rate")]
+    run = rs.simulate(vehicle, speed=70.0, duration=0.6, dt=5e-4, contact=rs.LinearContact(conicity=0.2), initial={"bogie1.yaw": 5e-4}, channels=names, rate=2000)
+    force, state, rate = (run[name] for name in names)
+    assert np.abs(force).max() > 3e3
+    # after the jolt of the start has left the rates (rho = 0.9 a step); then what the iteration leaves, some ten newtons
+    np.testing.assert_allclose(force[60:], curve_value(CURVED.force_law_record()["damping_curve"], rate[60:]), atol=30.0)
+    # and the virtual bench, driven by the elongation of the run, gives the same force: e = s + force/k(|de/dt|), k from the curve at rest
+    linear = CURVED.replace(series_stiffness_curve=None, series_stiffness=6e6)
+    again = rs.load_vehicle(put_into("pendolino", linear, tmp_path / "b.toml")).configured("AS_K")
+    run = rs.simulate(again, speed=70.0, duration=0.6, dt=5e-4, contact=rs.LinearContact(conicity=0.2), initial={"bogie1.yaw": 5e-4}, channels=names, rate=2000)
+    force, state, rate = (run[name] for name in names)
+    from railsym._core import bench_run
+
+    elongation = state + force / 6e6
+    bench, _ = bench_run(linear.force_law_record(), run.time, elongation, np.gradient(elongation, run.time), substeps=4, start=float(state[0]))
+    np.testing.assert_allclose(bench, force, atol=0.02 * np.abs(force).max())

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from railsym.dampers.record import CleanRecord, Record, RecordError, RecordWarni
 _MOST_SAMPLES = 512         # per cycle kept: beyond 256 harmonics there is only noise
 _FEWEST_SAMPLES = 384       # per cycle, that the means of blocks of samples leave: 1 % is lost of the 31st harmonic
 _MOST_HARMONICS = 15        # of the imposed motion
+_FIRST, _SECOND = np.array([5.0, 2.0, -1.0]) / 6.0, np.array([0.4, 0.3, 0.2, 0.1])     # line through 3 and 4 values, at its beginning
 _ASYMMETRY = 0.004          # of the first harmonic: even harmonics above it (and above noise) belong to an asymmetric damper
 
 
@@ -59,8 +61,56 @@ def clean(record, *, check_units=True):
         notes.append(f"{record.label}: the force drifts by {100 * drift:.1f} % of its amplitude; taken off")
     # the kept cycles go round, so that they begin where the displacement passes 0
     cycles = np.roll(cycles.reshape(len(cycles), -1), -start, axis=1).reshape(cycles.shape)
-    faults += checks.check_flat(record, cycles[1]) + _checked(record, frequency, cycles, check_units)
-    return _assembled(record, frequency, cycles, notes, faults, inside)
+    steady = _Steady(cycles, frequency)
+    faults += checks.check_flat(record, steady.mean[1]) + _checked(record, steady, check_units)
+    return _assembled(record, steady, notes, faults, inside)
+
+
+@dataclass(frozen=True, eq=False)
+class _Steady:
+    """Steady cycles (channels, cycles, samples) of a record, and what is needed of them more than once."""
+
+    cycles: np.ndarray
+    frequency: float
+
+    @cached_property
+    def mean(self):
+        """Mean cycle (channels, samples)."""
+        return self.cycles.sum(axis=1) / self.cycles.shape[1]
+
+    @cached_property
+    def harmonics(self):
+        """Complex amplitudes (channels, cycles, orders from 0)."""
+        return np.fft.rfft(self.cycles, axis=2) * (2.0 / self.cycles.shape[2])
+
+    @cached_property
+    def mean_harmonics(self):
+        """Of the mean cycle (channels, orders from 0)."""
+        return self.harmonics.sum(axis=1) / self.cycles.shape[1]
+
+    def first(self, channel):
+        """Complex amplitude of the first harmonic."""
+        return complex(self.mean_harmonics[channel, 1])
+
+    def scatter(self, channel):
+        """Root mean square of what does not repeat, unbiased."""
+        number, count = self.cycles.shape[1:]
+        departure = self.cycles[channel] - self.mean[channel]
+        return float(np.sqrt(np.vdot(departure, departure) / (count * (number - 1))))
+
+    def deviations(self, channel, orders):
+        """Standard deviation of the mean harmonics from order 1.
+
+        Neighbouring orders share their variance (five of them), since a few cycles alone tell little; noise need not be white.
+        """
+        number, count = self.cycles.shape[1:]
+        top = min(orders, (count - 1) // 2)
+        departure = self.harmonics[channel, :, 1:1 + top] - self.mean_harmonics[channel, 1:1 + top]
+        variance = np.sum(departure.real**2 + departure.imag**2, axis=0) / (number * (number - 1))
+        shared = np.convolve(variance, np.ones(5))[2:-2] / np.convolve(np.ones(top), np.ones(5))[2:-2]
+        # the two lowest by the straight line through their neighbours: the mean would be too low for noise that falls with frequency
+        shared[:2] = max(variance[:3] @ _FIRST, 0.5 * shared[0]), variance[:4] @ _SECOND
+        return np.sqrt(shared)
 
 
 def clean_all(records, *, check_units=True):
@@ -136,98 +186,75 @@ def _without_trend(cycles):
     return straight, abs(slope[1]) * number / (0.5 * np.ptp(straight[1].mean(axis=0)) or 1.0)
 
 
-def _checked(record, frequency, cycles, check_units):
+def _checked(record, steady, check_units):
     """Messages of the defects that show in the steady cycles."""
-    displacement, force = _first_harmonic(cycles[0]), _first_harmonic(cycles[1])
+    displacement, force, frequency = steady.first(0), steady.first(1), steady.frequency
     if check_units:
         checks.check_size(record, frequency, abs(displacement), abs(force))
     faults = checks.check_amplitude(record, abs(displacement))
-    faults += checks.check_periodic(record, _scatter(cycles[0]) / (abs(displacement) / np.sqrt(2.0)))
+    faults += checks.check_periodic(record, steady.scatter(0) / (abs(displacement) / np.sqrt(2.0)))
     stiffness = force / displacement
     checks.check_energy(record, frequency, np.angle(stiffness), np.pi * stiffness.imag * abs(displacement) ** 2)
-    if len(cycles) > 2:
-        faults += checks.check_velocity(record, frequency, _first_harmonic(cycles[2]) / (2j * np.pi * frequency * displacement))
+    if len(steady.cycles) > 2:
+        faults += checks.check_velocity(record, frequency, steady.first(2) / (2j * np.pi * frequency * displacement))
     return faults
 
 
-def _assembled(record, frequency, cycles, notes, faults, inside):
+def _assembled(record, steady, notes, faults, inside):
     """The CleanRecord; warns of the faults. ``inside``: mean square of the noise that the means of blocks have lost."""
     for fault in faults:
         warnings.warn(fault, RecordWarning, stacklevel=3)
-    scatter = _scatter(cycles[1])
+    cycles, frequency, scatter = steady.cycles, steady.frequency, steady.scatter(1)
     noise = float(np.hypot(scatter, np.sqrt(inside)))
-    motion, rate = _imposed_motion(cycles[0], frequency)
-    offset, asymmetric = _force_offset(cycles[1].mean(axis=0), rate, frequency, scatter / np.sqrt(cycles.shape[1]))
+    motion, rate = _imposed_motion(steady)
+    offset, asymmetric = _force_offset(steady, rate, scatter / np.sqrt(cycles.shape[1]))
     if asymmetric:
         notes = [*notes, f"{record.label}: the force is not the same in both directions; its offset {offset:.4g} N is that at no damper speed"]
     force = _thinned(cycles[1] - offset)
     number, count = force.shape
     motion, rate = (np.tile(_thinned(one[None])[0], number) for one in (motion, rate))
     time = np.arange(number * count) / (count * frequency)
-    if noise > 1e-3 * np.std(force):
-        notes = [*notes, f"{record.label}: noise of the force {100 * noise / (np.std(force) or 1.0):.2g} % of its r.m.s. value"]
-    return CleanRecord(time, motion, rate, force.ravel(), frequency, float(abs(_first_harmonic(cycles[0]))), number, count, offset, noise,
-                       name=record.name, messages=(*faults, *notes), deviation=_deviation(cycles), record=record)
+    size = float(np.linalg.norm(steady.mean_harmonics[1, 1:])) / np.sqrt(2.0)
+    if noise > 1e-3 * size:
+        notes = [*notes, f"{record.label}: noise of the force {100 * noise / (size or 1.0):.2g} % of its r.m.s. value"]
+    return CleanRecord(time, motion, rate, force.ravel(), frequency, abs(steady.first(0)), number, count, offset, noise,
+                       name=record.name, messages=(*faults, *notes), deviation=_deviation(steady), record=record)
 
 
-def _first_harmonic(cycles):
-    """Complex amplitude over all cycles."""
-    count = cycles.shape[-1]
-    return complex(cycles.mean(axis=0) @ np.exp(-2j * np.pi * np.arange(count) / count)) * 2.0 / count
-
-
-def _scatter(cycles):
-    """Root mean square of what does not repeat, unbiased."""
-    number = len(cycles)
-    return float(np.sqrt(np.var(cycles, axis=0).mean() * number / (number - 1)))
-
-
-def _deviation(cycles, orders=31):
+def _deviation(steady, orders=31):
     """Standard deviation (N) of the mean harmonics of the force, as `CleanRecord` has it."""
-    (motion, by_motion), (force, by_force) = (_mean_harmonics(one, orders) for one in cycles[:2])
-    by_force[0] = np.hypot(by_force[0], abs(force[0] / motion[0]) * by_motion[0])
+    by_force = steady.deviations(1, orders)
+    by_force[0] = np.hypot(by_force[0], abs(steady.first(1) / steady.first(0)) * steady.deviations(0, orders)[0])
     return by_force
 
 
-def _mean_harmonics(cycles, orders):
-    """Mean harmonics from order 1 of the cycles (cycles, samples), and their standard deviation.
-
-    Neighbouring orders share their variance (five of them), since a few cycles alone tell little; noise need not be white.
-    """
-    number, count = cycles.shape
-    top = min(orders, (count - 1) // 2)
-    harmonics = np.fft.rfft(cycles, axis=1)[:, 1:1 + top] * 2.0 / count
-    mean = harmonics.mean(axis=0)
-    variance = np.sum(np.abs(harmonics - mean) ** 2, axis=0) / (number * (number - 1))
-    shared = np.convolve(variance, np.ones(5))[2:-2] / np.convolve(np.ones(top), np.ones(5))[2:-2]
-    return mean, np.sqrt(shared)
-
-
-def _imposed_motion(cycles, frequency):
+def _imposed_motion(steady):
     """Displacement and velocity of one cycle from the harmonics that stand out of the noise; offset left out."""
-    count = cycles.shape[1]
-    mean, deviation = _mean_harmonics(cycles, _MOST_HARMONICS)
+    count = steady.cycles.shape[2]
+    deviation = steady.deviations(0, _MOST_HARMONICS)
+    mean = steady.mean_harmonics[0, 1:1 + deviation.size]
     # a complex error beyond 3.5 deviations: exp(-12)
     clear = np.abs(mean) > np.maximum(3.5 * deviation, 1e-5 * abs(mean[0]))
     clear[0] = True
-    spectrum = np.zeros(count // 2 + 1, dtype=complex)
-    spectrum[1:1 + mean.size] = np.where(clear, mean, 0.0) * count / 2.0
-    return np.fft.irfft(spectrum, count), np.fft.irfft(spectrum * 2j * np.pi * frequency * np.arange(spectrum.size), count)
+    spectra = np.zeros((2, count // 2 + 1), dtype=complex)
+    spectra[0, 1:1 + mean.size] = np.where(clear, mean, 0.0) * count / 2.0
+    spectra[1] = spectra[0] * (2j * np.pi * steady.frequency) * np.arange(count // 2 + 1)
+    return np.fft.irfft(spectra, count, axis=1)
 
 
-def _force_offset(force, rate, frequency, noise):
+def _force_offset(steady, rate, noise):
     """Offset of the force channel, and whether the damper is asymmetric.
 
     A symmetric damper under a sine has odd harmonics only, and the mean of its force is the offset. The mean of an asymmetric
     one (its even harmonics tell) is its own: there the offset is the force at no speed w of the damper itself, w = v - (dF/dt)/k.
     The compliance that closes the loop of F over w in the mean, 1/k = int(dF/dt dv) / int((dF/dt)^2), makes F a function of w.
     """
-    count = force.size
-    spectrum = np.fft.rfft(force) / count
+    count, frequency = steady.cycles.shape[2], steady.frequency
+    spectrum = 0.5 * steady.mean_harmonics[1]
     amplitude, order = 2.0 * np.abs(spectrum), np.arange(spectrum.size)
     even = np.sqrt(np.sum(amplitude[2:8:2] ** 2))
     if even < max(_ASYMMETRY * amplitude[1], 6.0 * noise * np.sqrt(2.0 / count)):
-        return float(force.mean()), False
+        return float(spectrum[0].real), False
     clear = (order <= 2 * _MOST_HARMONICS) & ((amplitude > 5.0 * noise * np.sqrt(2.0 / count)) | (order == 0))
     few = np.where(clear, spectrum, 0.0) * count
     smooth, slope = np.fft.irfft(few, count), np.fft.irfft(few * 2j * np.pi * frequency * order, count)

@@ -82,7 +82,8 @@ class Loops:
 def synthesis(harmonics, points):
     """Signal (tests, points) of harmonics (tests, orders), order 1 first."""
     spectrum = np.zeros((len(harmonics), points // 2 + 1), dtype=complex)
-    spectrum[:, 1:1 + harmonics.shape[1]] = 0.5 * points * harmonics
+    orders = min(harmonics.shape[1], points // 2 - 1)
+    spectrum[:, 1:1 + orders] = 0.5 * points * harmonics[:, :orders]
     return np.fft.irfft(spectrum, points, axis=1)
 
 
@@ -129,16 +130,6 @@ def hats(x, nodes):
     flat[piece.ravel(), at] = 1.0 - t.ravel()
     flat[piece.ravel() + 1, at] += t.ravel()
     return out
-
-
-def integral(signal, period):
-    """Integral (m) over time of a rate (tests, points) without its mean."""
-    spectrum = np.fft.rfft(signal, axis=-1)
-    order = np.arange(spectrum.shape[-1])
-    order[0] = 1
-    spectrum = spectrum / (2j * np.pi * order / np.asarray(period)[..., None])
-    spectrum[..., 0] = 0.0
-    return np.fft.irfft(spectrum, signal.shape[-1], axis=-1)
 
 
 def constants(loops, lag=None, viscous=False):

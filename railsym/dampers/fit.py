@@ -11,18 +11,20 @@ import numpy as np
 from railsym.dampers import elongation, energy, solve
 from railsym.dampers.models import DamperModel
 from railsym.dampers.parametrisation import Parametrisation, stiffness_nodes
-from railsym.dampers.uncertainty import Identifiability, covariance, identifiability, intervals
+from railsym.dampers.uncertainty import Identifiability, covariance, estimated_weights, identifiability, intervals
 from railsym.errors import ModelError
 
 MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
 METHODS = ("energy", "least_squares")
 _DIFFERENT_FREQUENCIES = 1.2  # ratio that tells the lag
 _GOOD = 1e-3                  # relative misfit below which a constant is enough
+_EXCESS = 1.6                 # times the noise that the lowest orders leave, above which a constant is not enough
 _DOUBTFUL = 0.02              # relative misfit above which a fit is begun again from another lag
 _NO_MODEL = {"energy": 0.15, "least_squares": 0.05}  # relative misfit above which a model is wrong even if none is better
 _CONSTANT = 0.04             # a stiffness that changes by less over the tests is constant
 _WRONG = 0.03                 # relative misfit of a curve above which the model cannot be right
 _HOPELESS = 0.05              # relative misfit of constants by the energy method above which a curve is needed
+_CORNER = 4.0                 # usual changes of slope between two nodes: a corner, about which nodes are placed anew
 _STEEPEST = 100.0             # times the equivalent damping: the start of a curve
 _EVEN = 2e-3                  # even harmonics above this part of the force, and above noise: not symmetric
 
@@ -133,17 +135,29 @@ def identify(records, model="maxwell", method="least_squares", bounds=None, prog
     free_lag = lag == "auto" and loops.angular.max() > _DIFFERENT_FREQUENCIES * loops.angular.min()
     fixed = 0.0 if lag == "auto" else float(lag)
     given = None if free_lag else fixed
+    best = _best_shape(loops, damping, model, odd, given, method, bounds, progress)
+    return _result(cleaned, loops, best, fixed, model, method, bounds, free_lag or lag != "auto", started)
+
+
+def _best_shape(loops, damping, model, odd, given, method, bounds, progress):
+    """Parametrisation, vector and misfit of a constant damping or a curve, as asked; of both the constant where it leaves no more than noise."""
     shapes = {"constant": (False,), "curve": (True,), "auto": (False, True)}[damping]
     best = None
     for curve in shapes:
         found = _fitted(loops, model, curve, odd, given, "energy" if len(shapes) > 1 and not curve else method, bounds, progress)
         if method == "least_squares" and len(shapes) > 1 and not curve and _norm(found[2]) < _HOPELESS:
             found = _fitted(loops, model, curve, odd, given, method, bounds, progress)
-        if best is None or _norm(found[2]) < 0.8 * _norm(best[2]):
+        if best is None or _is_better(loops, found[2], best[2]):
             best = found
-        if _norm(best[2]) < np.hypot(_GOOD, 1.3 * solve.noise_floor(loops)):
+        if _norm(best[2]) < np.hypot(_GOOD, 1.3 * solve.noise_floor(loops)) and solve.low_excess(loops, best[2]) < _EXCESS:
             break
-    return _result(cleaned, loops, best, fixed, model, method, bounds, free_lag or lag != "auto", started)
+    return best
+
+
+def _is_better(loops, found, best):
+    """Whether the misfit of a curve is clearly less than that of a constant, in all or in the lowest orders."""
+    before = solve.low_excess(loops, best)
+    return _norm(found) < 0.8 * _norm(best) or (before > _EXCESS and solve.low_excess(loops, found) < 0.7 * before)
 
 
 def _check(what, value, allowed):
@@ -216,7 +230,7 @@ def _sharpened(loops, made, x, fixed, bounds, progress, passes=(25, 40)):
         made, x = solve.with_better_nodes(loops, made, x)
         made, x = solve.refine(loops, made, x, fixed, bounds, progress, most, left)
         misfit = _norm(solve.misfit(loops, made, x, fixed))
-        if misfit < np.hypot(_GOOD, 1.1 * solve.noise_floor(loops)):
+        if misfit < np.hypot(_GOOD, 1.1 * solve.noise_floor(loops)) and np.abs(solve.bends(made, x)).max() < _CORNER:
             break
         # what a wrong model leaves is no reason for a curve with steps
         left = min(misfit, 0.2) if misfit > np.hypot(_WRONG, 3.0 * solve.noise_floor(loops)) else 0.0
@@ -265,9 +279,9 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
         jacobian = solve.evidence(loops, made, x, fixed)
         whiten = solve.entry_weights(loops)
         deviation = solve.entry_deviations(loops, made.damping_nodes is not None or made.stiffness_nodes is not None)
-        spread = covariance(jacobian, deviation * whiten, misfit * whiten)
+        spread = covariance(jacobian, deviation * whiten, misfit * whiten) * estimated_weights([one.cycles for one in cleaned])
         confidence = intervals(made, x, spread, freedom)
-        told = identifiability(made, x, jacobian, spread, made.bounds(bounds))
+        told = identifiability(made, x, jacobian, spread, made.bounds(bounds), confidence)
     tests = _errors(cleaned, loops, damper, lag)
     shifted = loops.shifted(lag)
     stiffness = damper.series_stiffness
@@ -280,14 +294,14 @@ def _result(cleaned, loops, best, fixed, model, method, bounds, lag_known, start
 
 
 def _errors(cleaned, loops, damper, lag):
-    found, shifted = [], loops.shifted(lag)
+    found, shifted = [], loops.coarse(max(1, loops.force.shape[1] // 128)).shifted(lag)
     for k, one in enumerate(cleaned):
         begun = perf_counter()
-        force = solve.steady(loops.only(k), damper)[0]
+        force = solve.steady(shifted.only(k), damper)[0]
         seconds = perf_counter() - begun
         measured = shifted.force[k]
         moving = force[0] - force[0].mean()
-        work, wanted = (np.mean(part * loops.velocity[k]) for part in (moving, measured))
+        work, wanted = (np.mean(part * shifted.velocity[k]) for part in (moving, measured))
         error = np.sqrt(np.mean((moving - measured) ** 2) + loops.noise[k] ** 2) / loops.scale[k]
         found.append(TestError(one.name, one.frequency, one.amplitude, float(error), float(work / wanted - 1.0),
                                float(np.ptp(moving) / np.ptp(measured) - 1.0), seconds))
@@ -308,6 +322,8 @@ def _message(loops, model, method, misfit, lag, lag_known, made, x, stiffness, d
             said.append("least squares will leave less")
         else:
             said.append("that is more than noise, but no other model leaves less")
+    if method == "energy" and made.damping_nodes is not None and made.damping_nodes[0] < 0.0:
+        said.append("the force is not the same in both directions: its curve by the energy method is rough, take least squares")
     if made.kind == "maxwell" and loops.angular.max() * damping / np.max(stiffness) < 0.02:
         said.append(f"the series stiffness {stiffness:.3g} N/m is too high to matter in these tests: a viscous model is enough")
     elif made.stiffness_nodes is not None and made.split(x)[1][1:].sum() < _CONSTANT:

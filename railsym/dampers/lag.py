@@ -38,18 +38,23 @@ def estimate_lag(cleaned):
         return 0.0, np.inf
     from scipy.optimize import least_squares
 
-    middle = np.exp(np.mean(np.log(force)))
+    powers = np.log(force / np.exp(np.mean(np.log(force)))) ** np.arange(1 + curved)[:, None]
+    scale = float(np.median(np.abs(stiffness)))
+    damping = scale / float(np.median(angular))
 
     def misfit(p):
-        model = _stiffness(p, angular, np.log(force / middle), np.median(np.abs(stiffness)))
-        ratio = np.log(model / stiffness)
+        ratio = _log_stiffness(p, angular, powers, scale, damping)[0] - np.log(stiffness)
         return np.concatenate([ratio.real, np.angle(np.exp(1j * ratio.imag))])
 
-    start = np.zeros(3 + curved)
+    def slopes(p):
+        change = _log_stiffness(p, angular, powers, scale, damping)[1]
+        return np.concatenate([change.real, change.imag], axis=1).T
+
     best = None
     for lag in (0.0, 0.003):
-        start[:2] = 1e2 * lag, 0.0
-        found = least_squares(misfit, start, x_scale=1.0, max_nfev=100, method="lm", ftol=1e-6, xtol=1e-6)
+        start = np.zeros(3 + curved)
+        start[0] = 1e2 * lag
+        found = least_squares(misfit, start, slopes, x_scale=1.0, max_nfev=100, method="lm", ftol=1e-6, xtol=1e-6)
         best = found if best is None or found.cost < best.cost else best
     lag = 1e-2 * best.x[0]
     freedom = max(1, 2 * len(cleaned) - best.x.size)
@@ -60,7 +65,13 @@ def estimate_lag(cleaned):
     return float(lag), deviation
 
 
-def _stiffness(p, angular, log_force, scale):
-    """Dynamic stiffness of the model: p = lag / 10 ms, ln of the series stiffness / scale, and ln of the damping as a polynomial."""
-    damping = scale / np.median(angular) * np.exp(np.polyval(p[:1:-1], log_force))
-    return np.exp(-1e-2j * angular * p[0]) / (np.exp(-p[1]) / scale + 1.0 / (1j * angular * damping))
+def _log_stiffness(p, angular, powers, scale, damping):
+    """ln of the dynamic stiffness (tests,), and its slopes (unknowns, tests).
+
+    p = lag / 10 ms, ln of the series stiffness / scale, and coefficients of ln(c / damping) over ``powers``.
+    """
+    stored = np.exp(-p[1]) / scale
+    lost = np.exp(-(p[2:] @ powers)) / (1j * angular * damping)
+    delay = -1e-2j * angular
+    whole = stored + lost
+    return delay * p[0] - np.log(whole), np.concatenate([delay[None], (stored / whole)[None], powers * (lost / whole)])

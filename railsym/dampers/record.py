@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -155,7 +156,7 @@ class CleanRecord:
         """Complex amplitude of a harmonic of the force, N: force(t) = Re(sum of harmonic(k) exp(2 pi i k frequency t))."""
         return complex(np.mean(self.force * np.exp(-2j * np.pi * order * self.frequency * self.time)) * (2.0 if order else 1.0))
 
-    @property
+    @cached_property
     def dynamic_stiffness(self) -> complex:
         """First harmonic of force over that of displacement, N/m: the imaginary part is what dissipates."""
         _, motion, _, force = self.mean_cycle

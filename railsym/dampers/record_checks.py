@@ -40,19 +40,18 @@ def check_clipping(record):
                               f"{sign * np.max(sign * force):.6g} N; repeat the test with a larger range of the force channel, or leave it out")
 
 
-def check_flat(record, force):
+def check_flat(record, mean):
     """A message where the force of the mean cycle stands within a 400th of its range at its highest or lowest value.
 
     Noise after the clipping hides it from `check_clipping`; a blow-off valve without slope looks the same, so this is no error.
     A sine is there for 3 % of its cycle.
     """
-    mean = force.mean(axis=0)
-    span = np.ptp(mean)
+    low, high = float(mean.min()), float(mean.max())
     found = []
-    for sign, end in ((1, "highest"), (-1, "lowest")):
-        share = np.mean(np.max(sign * mean) - sign * mean < _FLAT_BAND * span)
+    for end, value in (("highest", high), ("lowest", low)):
+        share = np.count_nonzero(np.abs(mean - value) < _FLAT_BAND * (high - low)) / mean.size
         if share > _FLAT_SHARE:
-            found.append(f"{record.label}: the force stands for {100 * share:.0f} % of each cycle at its {end} value {sign * np.max(sign * mean):.4g} N: "
+            found.append(f"{record.label}: the force stands for {100 * share:.0f} % of each cycle at its {end} value {value:.4g} N: "
                          "clipped, or a blow-off valve without slope")
     return found
 
@@ -163,14 +162,20 @@ def compare_sizes(cleaned):
     RecordError
         Beyond 200 times: a unit is off by 1000.
     """
-    size = np.array([abs(c.dynamic_stiffness) for c in cleaned])
-    for k, one in enumerate(cleaned):
-        others = np.delete(size, k)
-        if others.size >= 2 and size[k] < _TURNED * np.median(others) and one.dynamic_stiffness.imag < 0.0:
-            raise RecordError(f"{one.label}: its damper gives energy and is {np.median(others) / size[k]:.3g} times softer than in the other tests: "
+    if len(cleaned) < 3:
+        return
+    stiffness = [one.dynamic_stiffness for one in cleaned]
+    size = np.abs(stiffness)
+    table = np.broadcast_to(size, (size.size, size.size))[~np.eye(size.size, dtype=bool)].reshape(size.size, -1)
+    for one, own, ratio in zip(cleaned, stiffness, size / np.median(table, axis=1)):
+        if ratio < _TURNED and own.imag < 0.0:
+            raise RecordError(f"{one.label}: its damper gives energy and is {1.0 / ratio:.3g} times softer than in the other tests: "
                               "displacement and force are swapped")
-        if others.size >= 2 and not 0.005 < size[k] / np.median(others) < 200.0:
-            raise RecordError(f"{one.label}: its dynamic stiffness {size[k]:.3g} N/m is {size[k] / np.median(others):.3g} times that of the other tests: "
+        near = [other for other, at in zip(stiffness, cleaned) if abs(at.frequency / one.frequency - 1.0) < 0.05 and other.imag > 0.0]
+        if own.imag < 0.0 and near and max(np.angle(near)) > np.angle(own) + 0.25 and not 0.5 < abs(own) / np.median(np.abs(near)) < 2.0:
+            raise RecordError(f"{one.label}: its damper gives energy, unlike in other tests of its frequency: displacement and force are swapped")
+        if not 0.005 < ratio < 200.0:
+            raise RecordError(f"{one.label}: its dynamic stiffness {abs(own):.3g} N/m is {ratio:.3g} times that of the other tests: "
                               "a unit of its displacement or force is off by 1000")
 
 

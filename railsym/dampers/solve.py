@@ -22,6 +22,7 @@ from railsym.errors import CoreError
 
 _STEP = 1e-5          # of the logarithms and rises, for the change of curves
 _SOFT = 0.06          # standard deviation of the relative change of slope from node to node
+_TAIL = 3.0           # degrees of freedom of the t density of these changes
 _LEAST_NOISE = 1e-3   # relative misfit that curves of a few nodes leave even without noise
 _BENCH_ERROR = 3e-5   # relative misfit by the bench's steps
 _WIDEST = 1.5         # of the ends' speed: the damper itself is hardly faster
@@ -62,6 +63,15 @@ def misfit(loops, made, x, fixed, state=None):
 def noise_floor(loops):
     """Relative misfit that noise leaves in the harmonics."""
     return float(np.sqrt(np.mean(0.5 * np.sum((loops.deviation * loops.kept) ** 2, axis=1) / loops.scale**2)))
+
+
+def low_excess(loops, misfit, orders=5):
+    """Root mean square of the misfit over its deviation in the lowest orders: near 1 where only noise is left.
+
+    A curve that is missing shows there, while the sum over all orders is mostly noise.
+    """
+    low = (np.broadcast_to(np.arange(loops.kept.shape[1]), loops.kept.shape) < orders)[loops.kept]
+    return float(np.sqrt(np.mean((misfit / entry_deviations(loops, True))[np.concatenate([low, low])] ** 2)))
 
 
 def entry_deviations(loops, curves):
@@ -186,17 +196,26 @@ def _periodic(target, rate, period):
     return out + start[:, :, None] * np.concatenate([np.ones((len(keep), 1)), product[:, :-1]], axis=1)
 
 
-def _roughness(made, x, weight):
-    """A weak wish for slopes of the curves that change little from node to node: it decides where the tests do not."""
-    rows = []
-    damping, stiffness, _ = made.split(x)
-    if made.damping_nodes is not None:
-        slope = damping / np.diff(made.damping_nodes)
-        rows.append((slope[1:] - slope[:-1]) / (slope[1:] + slope[:-1]))
+def bends(made, x):
+    """Relative change of slope from node to node of the damping curve, in units of what is usual."""
+    if made.damping_nodes is None:
+        return np.zeros(0)
+    slope = made.split(x)[0] / np.diff(made.damping_nodes)
+    return (slope[1:] - slope[:-1]) / (slope[1:] + slope[:-1]) / _SOFT
+
+
+def _roughness(made, x, weight, tail=_TAIL):
+    """A weak wish for slopes of the curves that change little from node to node: it decides where the tests do not.
+
+    For the damping curve minus the logarithm of Student's t density: a valve that opens makes one large change among small ones, and
+    a normal density (``tail`` of 1e6) would round its corner off.
+    """
+    bend = bends(made, x)
+    rows = [np.sign(bend) * np.sqrt(tail * np.log1p(bend**2 / tail))]
     if made.stiffness_nodes is not None:
-        slope = stiffness[1:] / np.diff(made.stiffness_nodes) * made.stiffness_nodes[-1]
-        rows.append(slope[1:] - slope[:-1])
-    return weight / _SOFT * np.concatenate(rows) if rows else np.zeros(0)
+        slope = made.split(x)[1][1:] / np.diff(made.stiffness_nodes) * made.stiffness_nodes[-1]
+        rows.append((slope[1:] - slope[:-1]) / _SOFT)
+    return weight * np.concatenate(rows)
 
 
 def _weight(loops, left=0.0):
@@ -204,11 +223,11 @@ def _weight(loops, left=0.0):
     return max(noise_floor(loops), _LEAST_NOISE, left) / np.sqrt(2.0 * loops.kept.sum())
 
 
-def evidence(loops, made, x, fixed, weight=None, state=None):
+def evidence(loops, made, x, fixed, weight=None, state=None, tail=_TAIL):
     """Slopes of the misfit and, below them, of the wish for smooth curves."""
     weight = _weight(loops) if weight is None else weight
-    own = _roughness(made, x, weight)
-    rows = np.array([(_roughness(made, x + _STEP * unit, weight) - own) / _STEP for unit in np.eye(x.size)]).T
+    own = _roughness(made, x, weight, tail)
+    rows = np.array([(_roughness(made, x + _STEP * unit, weight, tail) - own) / _STEP for unit in np.eye(x.size)]).T
     return np.concatenate([jacobian(loops, made, x, fixed, state) * entry_weights(loops)[:, None], rows])
 
 
@@ -218,22 +237,22 @@ def refine(loops, made, x, fixed, bounds, progress=False, most=40, left=0.0):
 
     low, high = made.bounds(bounds)
     state = np.zeros_like(loops.force)
-    weight = _weight(loops, left)
+    weight, tail = _weight(loops, left), 1e6 if left else _TAIL      # what a wrong model leaves is no reason for corners
 
     whiten = entry_weights(loops)
 
     def function(p):
-        return np.concatenate([misfit(loops, made, p, fixed, state) * whiten, _roughness(made, p, weight)])
+        return np.concatenate([misfit(loops, made, p, fixed, state) * whiten, _roughness(made, p, weight, tail)])
 
     x = np.clip(x, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
     if not np.isfinite(function(x)).all():
         return made, x
-    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight, state), bounds=(low, high), x_scale="jac", ftol=1e-5,
+    found = least_squares(function, x, lambda p: evidence(loops, made, p, fixed, weight, state, tail), bounds=(low, high), x_scale="jac", ftol=1e-5,
                           xtol=1e-6, gtol=1e-12, max_nfev=most, verbose=2 if progress else 0)
     return made, found.x
 
 
-def with_better_nodes(loops, made, x, count=16):
+def with_better_nodes(loops, made, x, count=28):
     """The same damping curve with nodes over the speeds that the damper has in these tests, denser where it bends."""
     model = made.model(x)
     record = model.force_law_record()

@@ -55,6 +55,16 @@ def covariance(jacobian, deviation, misfit):
     return moved @ moved.T
 
 
+def estimated_weights(cycles):
+    """Factor on a covariance whose weights come from as many cycles of each test (Meier 1953, Biometrics 9, 59-73, for equal weights).
+
+    Weights prefer tests whose noise happens to look small. The first harmonic's variance, a line through three orders, has 2.4
+    degrees of freedom for each cycle but the first.
+    """
+    freedom = 2.4 * (np.asarray(cycles, dtype=float) - 1.0)
+    return 1.0 + 4.0 * (1.0 - 1.0 / freedom.size) * float(np.mean(1.0 / freedom))
+
+
 def intervals(parametrisation, x, spread, freedom):
     """Name -> (low, high), 95 %: constants in SI; curves as pairs of arrays at their nodes."""
     from scipy.stats import t
@@ -64,13 +74,13 @@ def intervals(parametrisation, x, spread, freedom):
     deviation = factor * np.sqrt(np.maximum(np.diag(spread), 0.0))
     found = {}
     if parametrisation.damping_nodes is None:
-        found["damping"] = tuple(float(np.exp(np.clip(x[0] + s * deviation[0], -700, 700))) for s in (-1, 1))
+        found["damping"] = _by_inverse(x[0], deviation[0])
     else:
         zero = int(np.argmin(np.abs(parametrisation.damping_nodes)))
         sums = np.tril(np.ones((d + 1, d)), -1)
         found["damping_curve"] = _band(sums - sums[zero], parametrisation.top_force * x[:d], parametrisation.top_force**2 * spread[:d, :d], factor)
     if k == 1:
-        found["series_stiffness"] = tuple(float(np.exp(np.clip(x[d] + s * deviation[d], -700, 700))) for s in (-1, 1))
+        found["series_stiffness"] = _by_inverse(x[d], deviation[d])
     elif k:
         sums = np.tril(np.ones((k, k)))
         sums[:, 1:] *= 1.0 if parametrisation.rising else -1.0
@@ -81,13 +91,19 @@ def intervals(parametrisation, x, spread, freedom):
     return found
 
 
+def _by_inverse(logarithm, deviation):
+    """Interval of a constant through that of its inverse, in which the elongation is linear; up to inf where noise can do without it."""
+    value = float(np.exp(logarithm))
+    return value / (1.0 + deviation), value / (1.0 - deviation) if deviation < 1.0 else np.inf
+
+
 def _band(combine, x, spread, factor):
     middle = combine @ x
     half = factor * np.sqrt(np.maximum(np.diag(combine @ spread @ combine.T), 0.0))
     return middle - half, middle + half
 
 
-def identifiability(parametrisation, x, jacobian, spread, bounds):
+def identifiability(parametrisation, x, jacobian, spread, bounds, confidence):
     """Condition, correlations, and warnings in words."""
     names = parametrisation.names
     length = np.linalg.norm(jacobian, axis=0)
@@ -111,7 +127,20 @@ def identifiability(parametrisation, x, jacobian, spread, bounds):
             said.append(f"{names[i]} is at its bound")
         elif names[i] != "lag" and 1.96 * size[i] > 0.2:
             said.append(f"{names[i]} is known to no better than {100 * 1.96 * size[i]:.0f} %")
-    return Identifiability(condition, correlation, tuple(names), tuple(said))
+    return Identifiability(condition, correlation, tuple(names), (*said, *_loose_curves(confidence)))
+
+
+def _loose_curves(confidence):
+    """Messages for curves whose intervals are wide: the damping curve beside its peak, the stiffness beside itself."""
+    said = []
+    for name, limit, of in (("damping_curve", 0.03, "of its peak force"), ("series_stiffness_curve", 0.2, "somewhere")):
+        if name in confidence:
+            low, high = confidence[name]
+            middle = np.abs(0.5 * (low + high))
+            width = float(np.max(0.5 * (high - low) / (middle.max() if name == "damping_curve" else middle)))
+            if width > limit:
+                said.append(f"{name} is known to no better than {100 * width:.0f} % {of}")
+    return said
 
 
 def _unit(name):

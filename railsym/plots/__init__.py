@@ -11,8 +11,9 @@ from railsym.plots.runs import plot_run, plot_spectrum
 from railsym.plots.sensitivities import plot_parameter_map, plot_sensitivities
 from railsym.plots.stability_curves import (plot_change, plot_critical_speed, plot_frequency, plot_stability_map,
                                             plot_stability_report)
+from railsym.plots.switch import plot_quasi_linear, plot_switch_study
 from railsym.plots.track import plot_track
 
 __all__ = ["plot_change", "plot_critical_speed", "plot_damper", "plot_damper_map", "plot_damping", "plot_eigenvalues", "plot_frequency",
-           "plot_mode_shape", "plot_parameter_map", "plot_profile_pair", "plot_root_locus", "plot_run", "plot_sensitivities", "plot_spectrum",
-           "plot_stability_map", "plot_stability_report", "plot_track"]
+           "plot_mode_shape", "plot_parameter_map", "plot_profile_pair", "plot_quasi_linear", "plot_root_locus", "plot_run", "plot_sensitivities",
+           "plot_spectrum", "plot_stability_map", "plot_stability_report", "plot_switch_study", "plot_track"]

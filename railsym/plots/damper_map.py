@@ -30,6 +30,8 @@ def plot_damper_map(model, *, frequency=FREQUENCY, amplitude=AMPLITUDE, fastest=
     -------
     ndarray of matplotlib Axes (1, 2)
     """
+    from matplotlib.patheffects import withStroke
+
     from railsym.dampers.bench import sweep
 
     axes = new_axes(axes, 1, 2, size=(10.4, 4.2))
@@ -40,7 +42,8 @@ def plot_damper_map(model, *, frequency=FREQUENCY, amplitude=AMPLITUDE, fastest=
         shown = np.ma.array(values, mask=outside)
         filled = place.contourf(found.frequencies, 1e3 * found.amplitudes, shown.T, levels=12, cmap="cividis")
         lines = place.contour(found.frequencies, 1e3 * found.amplitudes, shown.T, levels=filled.levels[::2], colors="white", linewidths=0.6)
-        place.clabel(lines, fmt=unit, fontsize=8)
+        for number in place.clabel(lines, fmt=unit, fontsize=8):
+            number.set_path_effects([withStroke(linewidth=1.5, foreground="0.25")])         # white on yellow cannot be read
         if records:
             place.plot([one.frequency for one in records], [1e3 * one.amplitude for one in records], "o", markerfacecolor="none",
                        markeredgecolor="black", markersize=5, label="tests")

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 _LINK_SHARE = 0.01           # of the heaviest body's mass, below which a body is a link
-_WHEEL_WIDTH = 0.135         # m, of a wheel's rim (EN 13715)
+WHEEL_WIDTH = 0.135          # m, of a wheel's rim (EN 13715)
 _AXLEBOX = (0.36, 0.22)      # m, drawn length and width of an axlebox
-_LINES = ("damper", "maxwell", "spring", "traction_rod", "actuator")      # element types drawn as a line
-_SHORTEST = 0.25             # m, an element shorter than this in the view is not drawn
+LINES = ("damper", "maxwell", "spring", "traction_rod", "actuator")      # element types drawn as a line
+SHORTEST = 0.25              # m, an element shorter than this in the view is not drawn
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,19 +116,29 @@ def _link(vehicle, body):
     return [Outline(points[order[[0, -1]]], (body.name,) * 2, "link")]
 
 
+def _arms(vehicle, body, car):
+    """Places (k, 3) on a frame, from its centre, where anything but the car body is attached."""
+    return np.array([p for p, other in _ends(vehicle, body.name) if other != car]).reshape(-1, 3) - body.position
+
+
+def half_width(vehicle, body, car):
+    """Lateral distance (m) of a frame's side members from its centre: where its primary suspension stands."""
+    sides = np.abs(_arms(vehicle, body, car)[:, 1])
+    sides = sides[sides > 0.1]
+    return float(np.median(sides)) if len(sides) else 0.5 * float(box_of(body)[1])
+
+
 def _frame(vehicle, body, car, view):
     size = box_of(body)
     if view == "side":
         return [_closed(body.position, size[0], 0.5 * size[2], 2, body.name, "frame")]
-    arms = np.array([p for p, other in _ends(vehicle, body.name) if other != car]).reshape(-1, 3) - body.position
-    sides = np.abs(arms[:, 1])[np.abs(arms[:, 1]) > 0.1]
-    half_width = float(np.median(sides)) if len(sides) else 0.5 * size[1]
+    arms, reach = _arms(vehicle, body, car), half_width(vehicle, body, car)
     length = max(size[0], 2.0 * np.abs(arms[:, 0]).max(initial=0.0))
-    beam = min(0.28, 0.4 * half_width)
-    edges = [(-length, -half_width - beam / 2), (length, -half_width - beam / 2), (length, -half_width + beam / 2),
-             (1.4 * beam, -half_width + beam / 2), (1.4 * beam, half_width - beam / 2), (length, half_width - beam / 2),
-             (length, half_width + beam / 2), (-length, half_width + beam / 2), (-length, half_width - beam / 2),
-             (-1.4 * beam, half_width - beam / 2), (-1.4 * beam, -half_width + beam / 2), (-length, -half_width + beam / 2)]
+    beam = min(0.28, 0.4 * reach)
+    edges = [(-length, -reach - beam / 2), (length, -reach - beam / 2), (length, -reach + beam / 2),
+             (1.4 * beam, -reach + beam / 2), (1.4 * beam, reach - beam / 2), (length, reach - beam / 2),
+             (length, reach + beam / 2), (-length, reach + beam / 2), (-length, reach - beam / 2),
+             (-1.4 * beam, reach - beam / 2), (-1.4 * beam, -reach + beam / 2), (-length, -reach + beam / 2)]
     points = np.array([(0.5 * x, y, 0.0) for x, y in edges + edges[:1]]) + body.position
     return [Outline(points, (body.name,) * len(points), "frame")]
 
@@ -140,9 +150,9 @@ def _wheelset(body, view):
         angle = np.linspace(0.0, 2.0 * np.pi, 49)
         rim = body.position + body.wheel_radius * np.column_stack([np.cos(angle), 0.0 * angle, np.sin(angle)])
         return [Outline(rim, (body.name,) * len(rim), "wheel")] + boxes[:1]
-    length = max([reach + _WHEEL_WIDTH] + [abs(box.lateral_position) for box in body.axleboxes])
+    length = max([reach + WHEEL_WIDTH] + [abs(box.lateral_position) for box in body.axleboxes])
     axle = body.position + np.array([[0.0, -length, 0.0], [0.0, length, 0.0]])
-    wheels = [_closed(body.position + np.array([0.0, side * reach, 0.0]), 2.0 * body.wheel_radius, _WHEEL_WIDTH, 1, body.name, "wheel")
+    wheels = [_closed(body.position + np.array([0.0, side * reach, 0.0]), 2.0 * body.wheel_radius, WHEEL_WIDTH, 1, body.name, "wheel")
               for side in (-1, 1)]
     return [Outline(axle, (body.name,) * 2, "axle"), *wheels, *boxes]
 
@@ -157,6 +167,6 @@ def _elements(vehicle, across):
     for element in vehicle.elements:
         points = np.array([element.first.position, element.second.position])
         seen = np.delete(points[1] - points[0], 3 - across)
-        if element.type in _LINES and np.hypot(*seen) > _SHORTEST:
+        if element.type in LINES and np.hypot(*seen) > SHORTEST:
             found.append(Outline(points, (element.first.body, element.second.body), "element"))
     return found
