@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 
 import railsym as rs
 from benchmarks.measure import Figure
+from benchmarks.transient_peers import peer_figures
 from railsym._core import _doubles, lib
 from railsym._core_integrator import Integrator
 from railsym.contact import LinearContact
@@ -35,8 +36,17 @@ def least(function, count, repeat=20):
     return best / count
 
 
-def rolling_model(vehicle, cars=1):
-    """A model of uncoupled cars behind each other on linear contact, preloaded, and the number of its bodies with axleboxes."""
+def coupler(vehicle, k):
+    """A bushing between the bodies of car k and the next one, 2 MN/m along the track."""
+    place, like = np.array([-30.0 * k - 15.0, 0.0, -1.0]), next(e for e in vehicle.elements if e.type == "bushing")
+    stiff = {"stiffness": np.array([2e6, 1e4, 1e4]), "damping": np.array([2e4, 1e2, 1e2])}
+    ends = (replace(like.first, body=f"car{k + i}_{vehicle.bodies[0].name}", position=place) for i in (0, 1))
+    return replace(like, name=f"coupler.{k}", first=next(ends), second=next(ends), axes=np.eye(3),
+                   parameters=type(like.parameters)({**like.parameters, **stiff}))
+
+
+def rolling_model(vehicle, cars=1, coupled=False):
+    """A model of cars behind each other on linear contact, preloaded, and the number of its bodies with axleboxes."""
     one = RollingVehicle(vehicle)
     train = SimpleNamespace(name="train", gravity=vehicle.gravity, bodies=(), elements=())
     for k in range(cars):
@@ -47,10 +57,13 @@ def rolling_model(vehicle, cars=1):
         train.elements += tuple(replace(e, name=name(e.name), first=replace(e.first, body=name(e.first.body), position=e.first.position + shift),
                                         second=replace(e.second, body=name(e.second.body), position=e.second.position + shift))
                                 for e in vehicle.elements)
+    couplers = cars - 1 if coupled else 0
+    train.elements += tuple(coupler(vehicle, k) for k in range(couplers))
     model = Model(train)
     lines = sum(e.axis is None for e in one.model.laws)
     forces = one.preload.law_forces
-    model.set_preload(np.tile(one.preload.bushing_forces, (cars, 1)), np.concatenate([np.tile(forces[:lines], cars), np.tile(forces[lines:], cars)]))
+    bushings = np.tile(one.preload.bushing_forces, (cars, 1))
+    model.set_preload(np.concatenate([bushings, np.zeros((couplers, bushings.shape[1]))]), np.concatenate([np.tile(forces[:lines], cars), np.tile(forces[lines:], cars)]))
     contacts = one.contacts(LinearContact().resolved(vehicle.contact))
     model.add_wheels(type(contacts)(*(np.tile(getattr(contacts, name), cars) for name in contacts.__slots__)))
     model.set_speed(SPEED)
@@ -94,10 +107,10 @@ def linear_contact():
 
 def growth():
     """Cost over the number of bodies."""
-    for cars in (1, 2, 4):
-        model, bodies = rolling_model(rs.load_vehicle("pendolino"), cars)
-        time = step_time(integrator(model))
-        yield Figure(f"step, {bodies} bodies", 1e6 * time, "us", None, f"{1e6 * time / bodies:.3f} us a body")
+    for cars, coupled in ((1, False), (2, False), (2, True), (4, False), (4, True)):
+        model, bodies = rolling_model(rs.load_vehicle("pendolino"), cars, coupled)
+        time, how = step_time(integrator(model)), "coupled" if coupled else "uncoupled"
+        yield Figure(f"step, {bodies} bodies", 1e6 * time, "us", None, f"{1e6 * time / bodies:.3f} us a body, {cars} cars, {how}")
 
 
 def table_contact():
@@ -181,3 +194,4 @@ def transient_figures():
     yield from growth()
     yield from against_scipy()
     yield from table_contact()
+    yield from peer_figures()

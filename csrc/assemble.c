@@ -1,24 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Residual and pencil of the whole model: gather coordinates into lanes, call the kernels,
+/* Residual and pencil of the whole model: gather coordinates into lanes (gather.c), call the kernels,
  * add their rows and entries where they belong. */
 #include <math.h>
 #include <string.h>
 
 #include "lanes.h"
 #include "model.h"
-
-RS_CLONES
-void rs_group_gather(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
-{
-	double *restrict in = group->in + (size_t)block * (size_t)(info->inputs * RS_LANES);
-	const double *restrict state = model->state;
-	const int *restrict source = group->source + (size_t)block * (size_t)(group->slots * RS_LANES);
-	for (int k = 0; k < group->slots; k++, source += RS_LANES) {
-		double *to = in + group->slot[k] * RS_LANES;
-		for (int lane = 0; lane < RS_LANES; lane++)
-			to[lane] = state[source[lane]];
-	}
-}
 
 static void add_rows(const rs_kernel_info *info, const int *index, const double *rows, double *r)
 {

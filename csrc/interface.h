@@ -159,6 +159,7 @@ typedef struct {
 } rs_track_piece;
 
 int rs_track_frame_at(const rs_track *track, double s, rs_track_frame *frame);
+void rs_track_straight_at(const rs_track *track, double s, double *from, double *to);
 int rs_track_rails_at(const rs_track *track, double s, double *rails);
 void rs_track_pose_of(const rs_track_frame *first, const rs_track_frame *second, double V, const double *offset1,
                       const double *offset2, rs_track_pose *pose);

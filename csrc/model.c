@@ -14,12 +14,13 @@ rs_model *rs_model_create(int coordinates, const unsigned char *is_angle)
 	model->groups = calloc((size_t)rs_kernel_count(), sizeof *model->groups);
 	model->is_angle = malloc((size_t)coordinates);
 	model->angle = malloc((size_t)coordinates * sizeof(int));
-	model->state = calloc(5 * (size_t)coordinates + 2, sizeof(double));
+	model->state = calloc(5 * (size_t)coordinates + 2 * RS_SPARE, sizeof(double));
 	if (!model->groups || !model->is_angle || !model->angle || !model->state) {
 		rs_model_free(model);
 		return NULL;
 	}
-	model->state[5 * coordinates + 1] = 1.0;
+	for (int k = 0; k < RS_SPARE; k++)
+		model->state[5 * coordinates + RS_SPARE + k] = 1.0;
 	memcpy(model->is_angle, is_angle, (size_t)coordinates);
 	for (int k = 0; k < coordinates; k++)
 		if (is_angle[k])
@@ -32,8 +33,8 @@ static void free_group(rs_group *group)
 	free(group->in);
 	free(group->index);
 	free((void *)group->laws);
-	free(group->slot);
-	free(group->source);
+	free(group->run);
+	free(group->first_run);
 }
 
 void rs_model_free(rs_model *model)
@@ -67,9 +68,7 @@ static int allocate_group(rs_group *group, const rs_kernel_info *info, int count
 	group->in = aligned_alloc(64, (bytes + 63) / 64 * 64);
 	group->index = malloc(filled * (size_t)info->coordinates * sizeof(int));
 	group->laws = malloc(filled * sizeof *group->laws);
-	group->slot = malloc(5 * (size_t)info->coordinates * sizeof(short));
-	group->source = malloc(5 * filled * (size_t)info->coordinates * sizeof(int));
-	return group->in && group->index && group->laws && group->slot && group->source ? RS_OK : RS_NO_MEMORY;
+	return group->in && group->index && group->laws ? RS_OK : RS_NO_MEMORY;
 }
 
 /* Unfilled lanes repeat the first instance, so that they compute numbers, and touch nothing. */
@@ -89,23 +88,6 @@ static void fill_group(rs_group *group, const rs_kernel_info *info, const double
 	}
 }
 
-/* Which inputs come from the state, and from where; coordinates that do not exist are zero, their cosines one. */
-static void fill_sources(rs_group *group, const rs_kernel_info *info, int n)
-{
-	int lanes = rs_kernel_lanes(), filled = 0, coordinates = info->coordinates;
-	for (int c = 0; c < coordinates; c++)
-		for (int part = 0; part < 5; part++)
-			if (info->slots[5 * c + part] >= 0)
-				group->slot[group->slots++] = info->slots[5 * c + part];
-	for (int block = 0; block < group->blocks; block++)
-		for (int c = 0; c < coordinates; c++)
-			for (int part = 0; part < 5; part++)
-				for (int lane = 0; info->slots[5 * c + part] >= 0 && lane < lanes; lane++) {
-					int k = group->index[(block * lanes + lane) * coordinates + c];
-					group->source[filled++] = k >= 0 ? part * n + k : 5 * n + (part == 4);
-				}
-}
-
 int rs_model_add(rs_model *model, int kernel, int count, const double *in, const int *index,
                  const rs_law *const *laws)
 {
@@ -117,14 +99,16 @@ int rs_model_add(rs_model *model, int kernel, int count, const double *in, const
 	if (check_index(model, (size_t)count * (size_t)info->coordinates, index) != RS_OK)
 		return RS_BAD_INDEX;
 	rs_group *group = model->groups + kernel;
-	if (allocate_group(group, info, count) != RS_OK) {
+	int status = allocate_group(group, info, count);
+	if (status == RS_OK) {
+		fill_group(group, info, in, index, laws);
+		status = rs_group_find_runs(group, info, model->coordinates);
+	}
+	if (status != RS_OK) {
 		free_group(group);
 		memset(group, 0, sizeof *group);
-		return RS_NO_MEMORY;
 	}
-	fill_group(group, info, in, index, laws);
-	fill_sources(group, info, model->coordinates);
-	return RS_OK;
+	return status;
 }
 
 int rs_model_set_input(rs_model *model, int kernel, int slot, const double *values)

@@ -5,15 +5,21 @@
 
 #include "kernels.h"
 
+/* Up to four inputs that stand side by side in the state in every lane: yaw, roll, pitch; or one that does not. */
+enum { RS_RUN = 4 };
+typedef struct {
+	short length, slot[RS_RUN];  /* unused ones: the first */
+	int source[8];        /* lanes, where in the state the first one is */
+} rs_run;
+
 typedef struct {
 	int count;            /* instances */
 	int blocks;           /* lanes full of them, the last one padded */
 	double *in;           /* blocks x inputs x lanes */
 	int *index;           /* blocks x lanes x coordinates of the kernel, -1: not there */
 	const rs_law **laws;  /* blocks x lanes */
-	int slots;            /* inputs that come from the state */
-	short *slot;          /* slots, their numbers */
-	int *source;          /* blocks x slots x lanes, where in the state each comes from */
+	rs_run *run;          /* of all blocks, one after the other */
+	int *first_run;       /* blocks + 1 */
 } rs_group;
 
 struct rs_model {
@@ -22,13 +28,19 @@ struct rs_model {
 	unsigned char *is_angle;  /* n */
 	int angles;
 	int *angle;               /* coordinates that are angles */
-	double *state;            /* q u a sin cos: n each; then 0 and 1, for coordinates that do not exist */
+	double *state;            /* q u a sin cos: n each; then zeros and ones, for coordinates that do not exist */
 };
 
 /* Sine and cosine of the angles among q into the state (trigonometry.c). */
 void rs_model_trigonometry(rs_model *model);
 
-/* Inputs of one block of a group from the state (assemble.c). */
+/* Zeros in the state for coordinates that do not exist, and as many ones for their cosines; a run may read beyond. */
+enum { RS_SPARE = RS_MAX_COORDINATES + RS_RUN };
+
+/* Finds the runs of a group (gather.c); RS_OK or RS_NO_MEMORY. */
+int rs_group_find_runs(rs_group *group, const rs_kernel_info *info, int coordinates);
+
+/* Inputs of one block of a group from the state (gather.c). */
 void rs_group_gather(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block);
 
 #endif

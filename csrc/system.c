@@ -71,14 +71,30 @@ static void capture(rs_system *system, int kernel, int block, const double *rows
 	}
 }
 
+/* Residual of all bodies from the rows of all groups. */
+static void sum_rows(const rs_system *system)
+{
+	const rs_row_sums *sums = &system->sums;
+	const double *restrict values = sums->values;
+	for (int block = 0; RS_BLOCK * block < system->size; block++) {
+		double sum[RS_BLOCK] = {0.0}, *restrict to = system->r + RS_BLOCK * block;
+		for (int k = sums->first[block]; k < sums->first[block + 1]; k++)
+			for (int i = 0; i < RS_BLOCK; i++)
+				sum[i] += values[sums->row[RS_BLOCK * k + i]];
+		for (int i = 0; i < RS_BLOCK; i++)
+			to[i] = sum[i];
+	}
+}
+
 static void evaluate_group(rs_system *system, int kernel, const double *seed, int inner, int *next)
 {
-	_Alignas(64) double rows[RS_MAX_COORDINATES * LANES], entries[RS_MAX_ENTRIES * LANES];
+	_Alignas(64) double entries[RS_MAX_ENTRIES * LANES];
 	const rs_kernel_info *info = rs_kernel_describe(kernel);
 	const rs_group *group = system->model->groups + kernel;
 	rs_scatter *scatter = system->scatter + kernel;
 	int coordinates = info->coordinates * LANES;
 	for (int block = 0; block < group->blocks; block++) {
+		double *rows = scatter->values + block * coordinates;
 		double *in = group->in + (size_t)block * (size_t)(info->inputs * LANES);
 		rs_group_gather(system->model, group, info, block);
 		rs_kernel_call(kernel, in, group->laws + block * LANES, seed, rows, seed ? entries : NULL);
@@ -90,7 +106,6 @@ static void evaluate_group(rs_system *system, int kernel, const double *seed, in
 				eliminate_entries(info, entries, kept);
 			eliminate_rows(scatter->internal, rows, kept, inner);
 		}
-		add(system->r, scatter->row + block * coordinates, rows, coordinates);
 		if (seed)
 			add(system->lu->values, scatter->entry + (size_t)block * (size_t)(info->entries * LANES), entries,
 			    info->entries * LANES);
@@ -115,13 +130,13 @@ static void add_own(rs_system *system, const double *seed)
 void rs_system_evaluate(rs_system *system, const double *seed, int inner)
 {
 	int next = 0;
-	memset(system->r, 0, (size_t)system->size * sizeof(double));
 	if (seed)
 		memset(system->lu->values, 0, (size_t)system->lu->values_size * sizeof(double));
 	rs_model_trigonometry(system->model);
 	for (int kernel = 0; kernel < rs_kernel_count(); kernel++)
 		if (system->model->groups[kernel].count)
 			evaluate_group(system, kernel, seed, inner, &next);
+	sum_rows(system);
 	add_own(system, seed);
 	system->capturing = 0;
 }

@@ -20,7 +20,17 @@ typedef struct {
 	int *entry;            /* blocks x entries x lanes, offset in the values of the LU */
 	unsigned char *inner;  /* blocks, 1 where any lane has an internal coordinate */
 	double *kept;          /* blocks x RS_KEPT x lanes: c/p, w, g, 1/p */
+	double *values;        /* blocks x coordinates x lanes, rows of the residual: part of the system's */
 } rs_scatter;
+
+/* Which rows make up the residual: row[8 k + i] of term k goes to coordinate i of its block. Sums of eight numbers in
+ * registers, where rows that went to their places one by one would wait for each other. */
+typedef struct {
+	int row_count;
+	double *values;        /* rows of all groups, then a zero */
+	int *first;            /* blocks + 1, terms of a block */
+	int *row;              /* terms x 8 */
+} rs_row_sums;
 
 enum { RS_KEPT = 2 * RS_MAX_COORDINATES + 2, RS_KEPT_ROW = RS_MAX_COORDINATES,
        RS_KEPT_G = 2 * RS_MAX_COORDINATES, RS_KEPT_INVERSE = 2 * RS_MAX_COORDINATES + 1 };
@@ -45,6 +55,7 @@ typedef struct {
 	int *place;           /* n, place in block vectors, -1 for an internal coordinate */
 	int *coordinate;      /* size, coordinate at a place, -1 for none */
 	rs_scatter *scatter;  /* one a kernel */
+	rs_row_sums sums;
 	double *r;            /* size + 8, residual, then the solution */
 	double *base;         /* values of the pencil before it was factored, without the wheels */
 	double *force;        /* n, applied generalised forces, N and N m */

@@ -154,6 +154,66 @@ static int make_scatters(rs_system *system)
 	return system->scatter && internal_are_inner(system);
 }
 
+/* Visits every row that has a place, in the order in which they are summed up; with fill, writes it down as the next term. */
+static void visit_rows(rs_system *system, int *terms, int fill)
+{
+	int lanes = rs_kernel_lanes(), offset = 0;
+	for (int kernel = 0; kernel < rs_kernel_count(); kernel++) {
+		const rs_group *group = system->model->groups + kernel;
+		rs_scatter *scatter = system->scatter + kernel;
+		int rows = group->blocks * lanes * rs_kernel_describe(kernel)->coordinates;
+		for (int k = 0; k < rows; k++) {
+			int place = scatter->row[k];
+			if (place == system->size)
+				continue;
+			if (fill)
+				system->sums.row[RS_BLOCK * (system->sums.first[place / RS_BLOCK] + terms[place]) + place % RS_BLOCK] = offset + k;
+			terms[place]++;
+		}
+		if (fill && rows)
+			scatter->values = system->sums.values + offset;
+		offset += rows;
+	}
+	system->sums.row_count = offset;
+}
+
+static void number_terms(rs_system *system, const int *terms)
+{
+	int *first = system->sums.first, blocks = system->size / RS_BLOCK;
+	first[0] = 0;
+	for (int block = 0; block < blocks; block++) {
+		int most = 0;
+		for (int i = 0; i < RS_BLOCK; i++)
+			most = terms[RS_BLOCK * block + i] > most ? terms[RS_BLOCK * block + i] : most;
+		first[block + 1] = first[block] + most;
+	}
+}
+
+static int make_sums(rs_system *system)
+{
+	rs_row_sums *sums = &system->sums;
+	int blocks = system->size / RS_BLOCK, fine = 0;
+	int *terms = calloc((size_t)system->size, sizeof *terms);
+	sums->first = malloc((size_t)(blocks + 1) * sizeof *sums->first);
+	if (terms && sums->first) {
+		visit_rows(system, terms, 0);
+		number_terms(system, terms);
+		size_t count = (size_t)sums->first[blocks] * RS_BLOCK, bytes = ((size_t)sums->row_count + 1) * sizeof(double);
+		sums->row = malloc((count + 1) * sizeof *sums->row);
+		sums->values = aligned_alloc(64, (bytes + 63) / 64 * 64);
+		fine = sums->row && sums->values;
+		for (size_t k = 0; fine && k < count; k++)
+			sums->row[k] = sums->row_count;
+		memset(terms, 0, (size_t)system->size * sizeof *terms);
+		if (fine) {
+			sums->values[sums->row_count] = 0.0;
+			visit_rows(system, terms, 1);
+		}
+	}
+	free(terms);
+	return fine;
+}
+
 static int build(rs_system *system, int blocks, const int *block)
 {
 	system->place = malloc((size_t)system->n * sizeof(int));
@@ -166,7 +226,7 @@ static int build(rs_system *system, int blocks, const int *block)
 	if (!order_blocks(system, blocks, block))
 		return 0;
 	system->base = malloc((size_t)system->lu->values_size * sizeof(double));
-	return system->base && number_places(system, blocks, block) && make_scatters(system);
+	return system->base && number_places(system, blocks, block) && make_scatters(system) && make_sums(system);
 }
 
 rs_system *rs_system_create(rs_model *model, int second, int blocks, const int *block)
@@ -198,6 +258,9 @@ void rs_system_free(rs_system *system)
 		free(system->scatter[kernel].kept);
 	}
 	free(system->scatter);
+	free(system->sums.values);
+	free(system->sums.first);
+	free(system->sums.row);
 	rs_block_lu_free(system->lu);
 	free(system->place);
 	free(system->coordinate);

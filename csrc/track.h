@@ -15,6 +15,10 @@
  *   Returned  frame
  *   Status    RS_OK, RS_OUT_OF_TRACK, RS_NOT_FINITE (s); frame is then as it was
  *   Notes     At a joint the piece after it holds (the last joint: before it).
+ * rs_track_straight_at where the track around s is straight: no curvature, constant cant and gradient
+ *   Given     s        m, within rs_track_limits
+ *   Returned  from, to  m, ends of the piece: over from <= s < to attitude and turning (zero) of the frame are the same to the
+ *                      last bit; both INFINITY where it is not straight
  * rs_track_rails_at    deviation of the rails from their design place
  *   Returned  rails    RS_TRACK_RAILS: left y, left z, right y, right z, m, along the axes of the track frame
  *                      (y to the right, z down), then their derivatives d/ds in this order

@@ -6,6 +6,7 @@
  * and the pose of one frame seen from another for the elements that join two. Only what moves is
  * written: elements within one frame keep the inputs they were made with.
  */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,16 +30,20 @@ rs_travel *rs_travel_create(const rs_track *track, int frames, const double *x, 
 	travel->frames = frames;
 	travel->pieces = pieces;
 	travel->gravity = gravity;
+	travel->written[0] = NAN;
 	travel->x = copied(x, frames);
 	travel->time = copied(time, pieces);
 	travel->place = copied(place, pieces);
 	travel->start_speed = copied(speed, pieces);
 	travel->acceleration = copied(acceleration, pieces);
 	travel->frame = calloc((size_t)frames, sizeof *travel->frame);
-	if (!travel->x || !travel->time || !travel->place || !travel->start_speed || !travel->acceleration || !travel->frame) {
+	travel->straight = malloc((size_t)frames * sizeof *travel->straight);
+	if (!travel->straight || !travel->x || !travel->time || !travel->place || !travel->start_speed || !travel->acceleration || !travel->frame) {
 		rs_travel_free(travel);
 		return NULL;
 	}
+	for (int k = 0; k < frames; k++)
+		travel->straight[k] = (rs_straight){INFINITY, INFINITY};
 	for (int k = 0; k < frames; k++)
 		travel->frame[k].attitude[0] = travel->frame[k].attitude[4] = travel->frame[k].attitude[8] = 1.0;
 	return travel;
@@ -50,6 +55,7 @@ void rs_travel_free(rs_travel *travel)
 		return;
 	free(travel->x);
 	free(travel->frame);
+	free(travel->straight);
 	free(travel->time);
 	free(travel->place);
 	free(travel->start_speed);
@@ -88,6 +94,7 @@ int rs_travel_bodies(rs_travel *travel, rs_model *model, int kernel, const int *
 	if (!body)
 		return RS_NO_MEMORY;
 	travel->body = body;
+	travel->written[0] = NAN;
 	for (int k = 0; k < count; k++) {
 		if (frame[k] < 0 || frame[k] >= travel->frames)
 			return RS_BAD_INDEX;
@@ -114,6 +121,7 @@ int rs_travel_pairs(rs_travel *travel, rs_model *model, int kernel, int count, c
 		    || instance[k] >= model->groups[kernel].count)
 			return RS_BAD_INDEX;
 		rs_moved_pair *own = pair + travel->pairs++;
+		travel->still = 0;
 		*own = (rs_moved_pair){.first = first, .second = second, .to = input_of(model, kernel, instance[k], slot)};
 		memcpy(own->offset1, offsets + 6 * k, sizeof own->offset1);
 		memcpy(own->offset2, offsets + 6 * k + 3, sizeof own->offset2);
@@ -139,6 +147,7 @@ int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame)
 void rs_travel_steady(rs_travel *travel, int steady)
 {
 	travel->steady = steady;
+	travel->written[0] = NAN;
 }
 
 static double travelled(rs_travel *travel, double time)
@@ -170,18 +179,15 @@ static void set_body(const rs_travel *travel, const rs_moved_body *body)
 }
 
 /* Two frames on one straight: their pose depends neither on place nor on speed. */
-static int on_a_straight(const rs_track_frame *first, const rs_track_frame *second)
+static int on_a_straight(const rs_travel *travel, int first, int second)
 {
-	for (int k = 0; k < 3; k++)
-		if (first->turning[k] != 0.0 || second->turning[k] != 0.0)
-			return 0;
-	return !memcmp(first->attitude, second->attitude, sizeof first->attitude);
+	return travel->straight[first].from == travel->straight[second].from && travel->straight[first].from < INFINITY;
 }
 
 static void set_pair(const rs_travel *travel, rs_moved_pair *pair)
 {
 	rs_track_pose pose;
-	int lanes = rs_kernel_lanes(), still = on_a_straight(travel->frame + pair->first, travel->frame + pair->second);
+	int lanes = rs_kernel_lanes(), still = on_a_straight(travel, pair->first, pair->second);
 	if (still && pair->still)
 		return;
 	pair->still = still;
@@ -203,19 +209,42 @@ static int set_wheelset(rs_travel *travel, int k, double s)
 	return travel->track ? rs_track_rails_at(travel->track, s, travel->rail + RS_TRACK_RAILS * k) : RS_OK;
 }
 
+/* Frames at s; where all are on the straight that all were on before, they stay as they are but for their places, which only poses
+ * of pairs would need. */
+static int set_frames(rs_travel *travel, double s)
+{
+	int status = RS_OK, moves = 0;
+	for (int k = 0; k < travel->frames; k++) {
+		double at = s + travel->x[k];
+		moves |= !(at >= travel->straight[k].from && at < travel->straight[k].to) || !on_a_straight(travel, 0, k);
+	}
+	if (moves)
+		travel->written[0] = NAN; /* also where a frame further on is off the track */
+	for (int k = 0; moves && k < travel->frames && !status; k++) {
+		double at = s + travel->x[k];
+		status = rs_track_frame_at(travel->track, at, travel->frame + k);
+		if (!status)
+			rs_track_straight_at(travel->track, at, &travel->straight[k].from, &travel->straight[k].to);
+	}
+	travel->still &= !moves;
+	return status;
+}
+
 int rs_travel_set(rs_travel *travel, double time)
 {
 	double s = travelled(travel, time);
-	int status = RS_OK;
-	for (int k = 0; travel->track && k < travel->frames && !status; k++)
-		status = rs_track_frame_at(travel->track, s + travel->x[k], travel->frame + k);
+	int status = travel->track ? set_frames(travel, s) : RS_OK;
 	for (int k = 0; k < travel->wheelsets && !status; k++)
 		status = set_wheelset(travel, k, s + travel->x[travel->wheelset[k]]);
 	if (status)
 		return status;
-	for (int k = 0; k < travel->bodies; k++)
-		set_body(travel, travel->body + k);
-	for (int k = 0; travel->track && k < travel->pairs; k++)
+	if (travel->V != travel->written[0] || travel->dV != travel->written[1])
+		for (int k = 0; k < travel->bodies; k++)
+			set_body(travel, travel->body + k);
+	travel->written[0] = travel->V;
+	travel->written[1] = travel->dV;
+	for (int k = 0; travel->track && !travel->still && k < travel->pairs; k++)
 		set_pair(travel, travel->pair + k);
+	travel->still = 1;
 	return RS_OK;
 }

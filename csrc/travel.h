@@ -35,15 +35,23 @@ typedef struct {
 	double *to;
 } rs_moved_pair;
 
+/* s on a straight piece of the track, from <= s < to: there only the place of a frame changes. */
+typedef struct {
+	double from, to;
+} rs_straight;
+
 struct rs_travel {
 	const rs_track *track;
 	int frames, pieces, bodies, pairs, wheelsets;
 	double *x;                /* frames */
 	rs_track_frame *frame;    /* frames */
+	rs_straight *straight;    /* frames, where each was found last */
 	double *time, *place, *start_speed, *acceleration;  /* pieces */
 	double gravity;
 	int steady;
+	int still;                /* 1: no pair has moved since it was written */
 	double V, dV;             /* at the time last asked for */
+	double written[2];        /* V and dV in the inputs of bodies; NAN: they are to be written */
 	rs_moved_body *body;
 	rs_moved_pair *pair;
 	int *wheelset;            /* frames of the wheelsets */

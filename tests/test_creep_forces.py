@@ -145,6 +145,16 @@ def test_left_and_right_are_mirror_images(law):
     assert forward == pytest.approx(right * [-1, 1, 1], abs=rounding)
 
 
+@pytest.mark.parametrize("grid", [(20, 20), (7, 9), (1, 5), (24, 3)])
+def test_fastsim_of_mirrored_creepages_is_mirrored_to_the_bit(grid):
+    a, b, creepages, load, friction, weight = cases(40)
+    right, left = (rs.creep_forces("fastsim", a, b, c, load, friction, STEEL, kalker_weight=weight, grid=grid, derivatives=True)
+                   for c in (creepages, creepages * MIRROR))
+    assert np.array_equal(left.forces, right.forces * MIRROR)
+    both = MIRROR[:, None] * np.concatenate([MIRROR, np.ones(3)])
+    assert np.array_equal(left.derivatives, right.derivatives * both)
+
+
 def test_moments_at_small_creepage():
     """Kalker's coefficients where the law is linear there; FASTSIM's own integral of its tractions (20 strips: 1 %)."""
     a, b, G = 5e-3, 4e-3, STEEL.shear_modulus

@@ -59,6 +59,21 @@ def test_pencil_over_a_table_is_the_derivative_of_the_rows(law):
     assert max(ratios) > 1.1 * min(ratios)
 
 
+def test_rows_are_the_same_with_and_without_slopes(cone_table):
+    """Without a pencil tables are read without slopes: another sum of the same products, 1e-15 of each."""
+    for contact in (cone_table, rs.ContactPair("S1002", "UIC60", inclination=1 / 40, gauge=1.435)):
+        forces = wheelset(contact, law="fastsim")
+        for y, yaw in ((0.0, 0.0), (1e-3, 2e-3), (-2e-3, 4e-3)):
+            q, u = [0, y, 0, yaw, -0.1 * y / 0.704, 0], rolling(y=0.02, spin=0.05)
+            alone, _ = forces.rows(q, u, SPEED)
+            outputs = forces.outputs()
+            beside, blocks = forces.rows(q, u, SPEED, seed=(1.0, 2e3))
+            assert np.abs(blocks).max() > 0
+            np.testing.assert_allclose(alone, beside, rtol=0, atol=1e-10 * np.abs(beside).max())
+            for name in ("load", "x", "radius", "angle", "a", "b", "creepage"):
+                np.testing.assert_allclose(getattr(outputs, name), getattr(forces.outputs(), name), rtol=1e-10, atol=1e-13)
+
+
 def test_errors_of_a_table_name_wheel_quantity_and_range(cone_table):
     forces = wheelset(cone_table)
     for q, said in (([0, -6e-3, 0, 0, 0, 0], r"wheelset 1, left: lateral shift -6 mm is outside the contact table \[-5, 5\] mm"),

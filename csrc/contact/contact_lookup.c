@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "../trigonometry.h"
 #include "rows.h"
 
 #define INLINE static RS_ALWAYS_INLINE
@@ -108,6 +109,24 @@ INLINE void read_field(const rs_contact_table *t, int zone, const cell *shift, c
 	out[BY_TAU] = by_tau;
 }
 
+/* The value alone, added up as in read_field. */
+INLINE void read_field_value(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const cell *level, row *value)
+{
+	size_t along = (size_t)t->levels, across = along * (size_t)t->roll.count;
+	const row *first = (const row *)t->zone[zone].field + (size_t)shift->node * across + (size_t)roll->node * along + (size_t)level->node;
+	row at[4] = {{0}}, sum = {0};
+	for (int i = 0; i < 4; i++)
+		for (int j = 0; j < 4; j++) {
+			const row *node = first + (size_t)i * across + (size_t)j * along;
+			double weight = shift->w[i] * roll->w[j];
+			for (int k = 0; k < 4; k++)
+				ADD_SCALED(at[k], weight, node[k]);
+		}
+	for (int k = 0; k < 4; k++)
+		ADD_SCALED(sum, level->w[k], at[k]);
+	*value = sum;
+}
+
 /* A number with its slopes over (eta, roll at constant eta, drop, yaw). */
 typedef struct {
 	double v, d[4];
@@ -171,6 +190,15 @@ INLINE void turn(double yaw, const double *slope_angle, rs_patch *patch)
 	patch->radius[4] += 2.0 * half * yaw;
 }
 
+INLINE cell level_of(const rs_contact_table *t, double tau)
+{
+	int parts = t->levels - 3, k = (int)(tau * parts);
+	cell level;
+	level.node = k < parts ? k : parts - 1;
+	weigh(tau * parts - level.node, parts, &level);
+	return level;
+}
+
 INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const slopes *p, const double *place,
                        rs_patch *patch)
 {
@@ -180,10 +208,7 @@ INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, c
 	slopes tau = {root / deepest, {0.0}};
 	for (int k = 0; k < 4; k++)
 		tau.d[k] = p->d[k] / (2.0 * deepest * root);
-	int parts = t->levels - 3, k = (int)(tau.v * parts);
-	cell level;
-	level.node = k < parts ? k : parts - 1;
-	weigh(tau.v * parts - level.node, parts, &level);
+	cell level = level_of(t, tau.v);
 	read_field(t, zone, shift, roll, &level, rows);
 	chain((const double (*)[RS_FIELDS])rows, &tau, p, root, r0, out);
 	take((const double (*)[RS_FIELDS])out, RS_STIFFNESS, patch->load);
@@ -198,13 +223,35 @@ INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, c
 	patch->zone = zone;
 }
 
+/* The same without slopes: the numbers [0] of the patch. */
+INLINE void read_patch_values(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, double p, const double *place,
+                              rs_patch *patch)
+{
+	double root = sqrt(p), yaw = place[3], square = yaw * yaw;
+	cell level = level_of(t, root / sqrt(t->deepest));
+	row value;
+	read_field_value(t, zone, shift, roll, &level, &value);
+	const double *f = (const double *)&value;
+	double sine, cosine;
+	rs_sine_cosine(f[RS_ANGLE], &sine, &cosine);
+	double tangent = sine / cosine, arm = f[RS_RADIUS] * tangent, half = 0.5 * arm * tangent;
+	patch->load[0] = p * root * f[RS_STIFFNESS];
+	patch->x[0] = arm * yaw;
+	patch->across[0] = f[RS_ACROSS] - arm * square;
+	patch->radius[0] = f[RS_RADIUS] + half * square;
+	patch->angle[0] = f[RS_ANGLE] - place[1];
+	patch->a[0] = root * f[RS_LENGTH];
+	patch->b[0] = root * f[RS_WIDTH];
+	patch->zone = zone;
+}
+
 static int refuse(int which, int *beyond)
 {
 	*beyond = which;
 	return RS_OUT_OF_TABLE;
 }
 
-RS_CLONES int rs_contact_lookup(const rs_contact_table *t, const double *place, rs_patch *patch, int *count, int *beyond)
+INLINE int look_up(const rs_contact_table *t, const double *place, int with_slopes, rs_patch *patch, int *count, int *beyond)
 {
 	cell shift[RS_ZONES], roll;
 	double at, twice[4];
@@ -231,7 +278,10 @@ RS_CLONES int rs_contact_lookup(const rs_contact_table *t, const double *place, 
 	}
 	for (int z = 0; z < t->zones; z++)
 		if (p[z].v > LEAST_TAU * LEAST_TAU * t->deepest) {
-			read_patch(t, z, &shift[z], &roll, &p[z], place, patch + *count);
+			if (with_slopes)
+				read_patch(t, z, &shift[z], &roll, &p[z], place, patch + *count);
+			else
+				read_patch_values(t, z, &shift[z], &roll, p[z].v, place, patch + *count);
 			if (!isfinite(patch[*count].load[0])) { /* a zone that meets the rail beyond an end of a profile */
 				*count = 0;
 				return refuse(0, beyond);
@@ -239,6 +289,16 @@ RS_CLONES int rs_contact_lookup(const rs_contact_table *t, const double *place, 
 			(*count)++;
 		}
 	return RS_OK;
+}
+
+RS_CLONES int rs_contact_lookup(const rs_contact_table *t, const double *place, rs_patch *patch, int *count, int *beyond)
+{
+	return look_up(t, place, 1, patch, count, beyond);
+}
+
+RS_CLONES int rs_contact_lookup_values(const rs_contact_table *t, const double *place, rs_patch *patch, int *count, int *beyond)
+{
+	return look_up(t, place, 0, patch, count, beyond);
 }
 
 int rs_contact_lookup_many(const rs_contact_table *t, int n, const double *place, rs_patch *patch, int *count, int *beyond)

@@ -48,6 +48,9 @@ struct rs_contact_table {
 	rs_zone_table zone[RS_ZONES];
 };
 
+/* As rs_contact_lookup, the values [0] only, the same to rounding; slopes are not touched. */
+int rs_contact_lookup_values(const rs_contact_table *table, const double *place, rs_patch *patch, int *count, int *beyond);
+
 rs_contact_table *rs_contact_table_allocate(const double *shape);
 int rs_zone_table_allocate(rs_contact_table *table, int zone);
 

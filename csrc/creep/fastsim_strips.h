@@ -144,15 +144,17 @@ RS_INLINE void PART(collect)(const traction *p, const rates *rate, double Y, dou
 	h[2][q] += weight * (L * rate->root * sum_ty - Y / rate->root * p->sum_x);
 }
 
-/* Strips first .. first + count - 1 side by side; the first of the columns is P, the others its slopes. */
-RS_INLINE void PART(strips)(const rs_creep_input *in, int q, int columns, int count, int first, const rates *rate, rs_creep_value *out)
+/* Strips first .. first + count - 1, counted inwards from Y = -side, side by side; the first of the columns is P, the others its
+ * slopes. */
+RS_INLINE void PART(strips)(const rs_creep_input *in, int q, int columns, int count, int first, double side, const rates *rate,
+                            rs_creep_value *out)
 {
 	double dt = 2.0 / in->cells, dY = 2.0 / in->strips, Y[MOST], L[MOST];
 	traction p[MOST][4];
 	step add[MOST][4];
 	UNROLL
 	for (int j = 0; j < count; j++) {
-		Y[j] = -1.0 + (first + j + 0.5) * dY;
+		Y[j] = side * (-1.0 + (first + j + 0.5) * dY);
 		L[j] = sqrt(1.0 - Y[j] * Y[j]);
 		PART(start)(rate, columns, Y[j], dt / L[j], add[j], p[j]);
 	}
@@ -178,25 +180,44 @@ RS_INLINE void PART(strips)(const rs_creep_input *in, int q, int columns, int co
 		}
 }
 
+/* Strips on one side of the middle, from the edge inwards. */
+RS_INLINE void PART(one_side)(const rs_creep_input *in, int q, int slopes, double side, const rates *rate, rs_creep_value *out)
+{
+	int j = 0, half = in->strips / 2;
+	if (slopes) {
+		for (; j + FEW <= half; j += FEW)
+			PART(strips)(in, q, 4, FEW, j, side, rate, out);
+		for (; j < half; j++)
+			PART(strips)(in, q, 4, 1, j, side, rate, out);
+		return;
+	}
+	for (; j + MOST <= half; j += MOST)
+		PART(strips)(in, q, 1, MOST, j, side, rate, out);
+	for (; j < half; j++)
+		PART(strips)(in, q, 1, 1, j, side, rate, out);
+}
+
+/* Each side has a sum of its own, and the strip in the middle, so that mirrored creepages have mirrored forces to the last bit. */
 static void PART(fastsim)(const rs_creep_input *in, int slopes, rs_creep_value *out)
 {
 	const double straight = 3.0 * RS_PI / 16.0;
+	rs_creep_value sum[2];
+	memset(sum, 0, sizeof sum);
 	for (int q = 0; q < RS_LANES / WIDE; q++) {
 		part root = ((const part *)&in->root)[q], u3 = ((const part *)&in->u[2])[q];
 		rates rate = {straight * ((const part *)&in->u[0])[q], straight * ((const part *)&in->u[1])[q], 2.0 * u3,
 		              2.0 / (root * root), u3, root, straight};
-		int j = 0;
-		if (slopes) {
-			for (; j + FEW <= in->strips; j += FEW)
-				PART(strips)(in, q, 4, FEW, j, &rate, out);
-			for (; j < in->strips; j++)
-				PART(strips)(in, q, 4, 1, j, &rate, out);
-			continue;
-		}
-		for (; j + MOST <= in->strips; j += MOST)
-			PART(strips)(in, q, 1, MOST, j, &rate, out);
-		for (; j < in->strips; j++)
-			PART(strips)(in, q, 1, 1, j, &rate, out);
+		for (int other = 0; other < 2; other++)
+			PART(one_side)(in, q, slopes, other ? -1.0 : 1.0, &rate, sum + other);
+		if (in->strips % 2 && slopes)
+			PART(strips)(in, q, 4, 1, in->strips / 2, 0.0, &rate, out);
+		else if (in->strips % 2)
+			PART(strips)(in, q, 1, 1, in->strips / 2, 0.0, &rate, out);
+	}
+	for (int i = 0; i < 3; i++) {
+		out->h[i] += sum[0].h[i] + sum[1].h[i];
+		for (int j = 0; slopes && j < 3; j++)
+			out->d[i][j] += sum[0].d[i][j] + sum[1].d[i][j];
 	}
 }
 

@@ -101,6 +101,15 @@ int rs_track_frame_at(const rs_track *track, double s, rs_track_frame *frame)
 	return RS_OK;
 }
 
+void rs_track_straight_at(const rs_track *track, double s, double *from, double *to)
+{
+	int k = piece_at(track, s);
+	rs_track_degree degree = track->degree[k];
+	int straight = degree.curvature == 0 && degree.cant == 0 && degree.slope == 0 && track->piece[k].curvature[0] == 0.0;
+	*from = straight ? track->joint[k] : INFINITY;
+	*to = straight ? track->joint[k + 1] : INFINITY;
+}
+
 int rs_track_frames(const rs_track *track, int n, const double *s, rs_track_frame *frames, int *failed)
 {
 	int status = RS_OK, k = 0;

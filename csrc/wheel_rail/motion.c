@@ -18,6 +18,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "../trigonometry.h"
 #include "motion.h"
 #include "vectors.h"
 
@@ -33,7 +34,9 @@ typedef struct {
 
 RS_INLINE void axle_axes(const double *q, rs_axle_state *axle)
 {
-	double sy = sin(q[YAW]), cy = cos(q[YAW]), sr = sin(q[ROLL]), cr = cos(q[ROLL]);
+	double sy, cy, sr, cr;
+	rs_sine_cosine(q[YAW], &sy, &cy);
+	rs_sine_cosine(q[ROLL], &sr, &cr);
 	double forward[3] = {cy, sy, 0.0}, along[3] = {-sy * cr, cy * cr, sr};
 	memcpy(axle->forward, forward, sizeof forward);
 	memcpy(axle->axle, along, sizeof along);
@@ -112,9 +115,9 @@ RS_INLINE void place_on_rail(const rs_wheelset *set, const rail_head *head, rs_w
 	const rs_wheel *given = &set->wheel[wheel->side > 0.0];
 	const double *axle = wheel->at.a;
 	wheel->place[0] = wheel->side * DOT(wheel->e2, head->D) + 0.5 * set->spacing;
-	wheel->place[1] = wheel->side * asin(DOT(axle, wheel->e3));
+	wheel->place[1] = wheel->side * rs_arcsine(DOT(axle, wheel->e3));
 	wheel->place[2] = DOT(wheel->e3, head->D) + given->r0 + given->sink;
-	wheel->place[3] = wheel->side * atan2(-DOT(axle, head->e1), DOT(axle, wheel->e2));
+	wheel->place[3] = wheel->side * rs_arctangent(-DOT(axle, head->e1), DOT(axle, wheel->e2));
 }
 
 /* The rail's own motion under the wheel, and the wheel's axes. */

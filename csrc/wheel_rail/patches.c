@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "../trigonometry.h"
 #include "motion.h"
 #include "vectors.h"
 
@@ -76,8 +77,6 @@ static void gather(const rs_wheel_rail *wr, const rs_batch *batch, int tangents,
 		double c[4], slope[4];
 		wheel[l] = batch->wheel[from];
 		patch[l] = wheel[l]->patch[number].load;
-		RS_AT(to->sine, l) = sin(wheel[l]->patch[number].angle[0]);
-		RS_AT(to->cosine, l) = cos(wheel[l]->patch[number].angle[0]);
 		RS_AT(to->damping, l) = given->damping;
 		RS_AT(to->adhesion.friction, l) = given->friction;
 		RS_AT(to->adhesion.weight, l) = given->weight;
@@ -96,6 +95,16 @@ static void gather(const rs_wheel_rail *wr, const rs_batch *batch, int tangents,
 		SPREAD(place_to, RS_COLUMNS * RS_PLACE_SIZE, to->place_to);
 		SPREAD(to, RS_COLUMNS * RS_MOTION_SIZE, to->to);
 	}
+}
+
+/* Contact angles are small but for flanges. */
+RS_INLINE void contact_angles(inputs *x)
+{
+	RS_EACH(l)
+		rs_sine_cosine_series(RS_OF(x->patch[ANGLE][0], l), &RS_AT(x->sine, l), &RS_AT(x->cosine, l));
+	RS_EACH(l)
+		if (fabs(RS_OF(x->patch[ANGLE][0], l)) > RS_SMALL_ANGLE)
+			rs_sine_cosine(RS_OF(x->patch[ANGLE][0], l), &RS_AT(x->sine, l), &RS_AT(x->cosine, l));
 }
 
 RS_INLINE void axes_of_contact(const inputs *x, geometry *g)
@@ -219,6 +228,7 @@ RS_INLINE void column_forces(const inputs *x, const geometry *g, const column *c
 RS_CLONES static void contact(const rs_wheel_rail *wr, double V, int tangents, inputs *x, results *y)
 {
 	geometry g;
+	contact_angles(x);
 	axes_of_contact(x, &g);
 	load_and_creepages(x, V, &g);
 	rs_adhesion_forces(wr, tangents, &x->adhesion, &y->creep);

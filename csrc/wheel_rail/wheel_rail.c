@@ -7,16 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../contact/contact_table.h"
 #include "motion.h"
 #include "vectors.h"
 
-static rs_lookup *lookup_of(int kind)
+static rs_lookup *lookup_of(int kind, int tangents)
 {
 	switch (kind) {
 	case RS_CONTACT_CONES:
 		return rs_contact_cones_lookup;
 	case RS_CONTACT_TABLE:
-		return rs_contact_lookup;
+		return tangents ? rs_contact_lookup : rs_contact_lookup_values;
 	default:
 		return NULL;
 	}
@@ -28,7 +29,7 @@ static int fit(int wheelsets, const rs_wheelset *wheelset, const rs_creep_settin
 	    (creep->law == RS_CREEP_EXACT && !creep->table))
 		return 0;
 	for (int k = 0; k < 2 * wheelsets; k++)
-		if (!lookup_of(wheelset[k / 2].wheel[k % 2].kind) || !wheelset[k / 2].wheel[k % 2].shape)
+		if (!lookup_of(wheelset[k / 2].wheel[k % 2].kind, 1) || !wheelset[k / 2].wheel[k % 2].shape)
 			return 0;
 	return 1;
 }
@@ -76,7 +77,7 @@ static int fail(rs_wheel_rail *wr, int status, int wheel, int variable, double v
 	return status;
 }
 
-static int look_up(rs_wheel_rail *wr, int number)
+static int look_up(rs_wheel_rail *wr, int number, int tangents)
 {
 	rs_wheel_state *wheel = &wr->axle[number / 2].wheel[number % 2];
 	const rs_wheel *given = &wr->wheelset[number / 2].wheel[number % 2];
@@ -85,7 +86,7 @@ static int look_up(rs_wheel_rail *wr, int number)
 	for (int k = 0; k < RS_PLACE_SIZE; k++)
 		if (!isfinite(wheel->place[k]))
 			return fail(wr, RS_NOT_FINITE, number, k, wheel->place[k]);
-	int status = lookup_of(given->kind)(given->shape, wheel->place, wheel->patch, &wheel->count, &beyond);
+	int status = lookup_of(given->kind, tangents)(given->shape, wheel->place, wheel->patch, &wheel->count, &beyond);
 	if (status != RS_OK)
 		return fail(wr, status, number, beyond, wheel->place[beyond]);
 	for (int k = 0; k < wheel->count; k++) {
@@ -97,15 +98,17 @@ static int look_up(rs_wheel_rail *wr, int number)
 	return RS_OK;
 }
 
-static void clear(rs_axle_state *axle)
+static void clear(rs_axle_state *axle, int tangents)
 {
 	for (int k = 0; k < 2; k++) {
 		rs_wheel_state *wheel = &axle->wheel[k];
-		memset(wheel->force, 0, sizeof wheel->force);
-		memset(wheel->moment, 0, sizeof wheel->moment);
+		EACH_AXIS(i)
+			wheel->force[i] = wheel->moment[i] = 0.0;
+		wheel->tgamma = 0.0;
+		if (!tangents)
+			continue;
 		memset(wheel->force_to, 0, sizeof wheel->force_to);
 		memset(wheel->moment_to, 0, sizeof wheel->moment_to);
-		wheel->tgamma = 0.0;
 	}
 }
 
@@ -183,9 +186,9 @@ int rs_wheel_rail_rows(rs_wheel_rail *wr, const double *q, const double *u, doub
 		const rs_wheelset *set = &wr->wheelset[k];
 		rs_axle_motion(set, q + set->first, u + set->first, V, w + 3 * k, rail ? rail + 8 * k : as_designed,
 		               blocks ? seed : NULL, &wr->axle[k]);
-		clear(&wr->axle[k]);
+		clear(&wr->axle[k], blocks != NULL);
 		for (int side = 0; side < 2; side++) {
-			int status = look_up(wr, 2 * k + side);
+			int status = look_up(wr, 2 * k + side, blocks != NULL);
 			if (status != RS_OK)
 				return status;
 		}
