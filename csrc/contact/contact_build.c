@@ -122,7 +122,7 @@ static rs_axis own_axis(const rs_axis *whole, const int *range, int parts)
 		first = 0;
 		last = 3;
 	}
-	return (rs_axis){whole->start + first * whole->step, whole->step / parts, (last - first) * parts + 1};
+	return rs_axis_of(whole->start + first * whole->step, whole->step / parts, (last - first) * parts + 1);
 }
 
 /* Place on the wheel of the largest gap between two rail points. */

@@ -35,14 +35,14 @@ INLINE void weigh(double t, double inverse_step, cell *c)
 /* Where x lies on an axis, in nodes; 0 where it is outside the range that may be read. */
 INLINE int locate(const rs_axis *axis, double x, cell *c, double *t)
 {
-	double inverse = 1.0 / axis->step, place = (x - axis->start) * inverse;
+	double place = (x - axis->start) * axis->inverse;
 	if (!(place >= 1.0 && place <= axis->count - 2))
 		return 0;
 	int k = (int)place;
 	k = k > axis->count - 3 ? axis->count - 3 : k;
 	c->node = k - 1;
 	*t = place - k;
-	weigh(*t, inverse, c);
+	weigh(*t, axis->inverse, c);
 	return 1;
 }
 
@@ -146,17 +146,18 @@ INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw
 
 /* Values of all fields with their slopes over (y, roll, drop, yaw), load and semi-axes with their power of p: column 0 of out,
  * then 1 to 4. d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
-INLINE void chain(const double (*f)[RS_FIELDS], const slopes *tau, const slopes *p, double root, double radius, double (*out)[RS_FIELDS])
+INLINE void chain(const double (*f)[RS_FIELDS], const double *tau, const slopes *p, double root, double inverse, double radius,
+                  double (*out)[RS_FIELDS])
 {
 	const double power[RS_FIELDS] = {p->v * root, 1.0, 1.0, 1.0, root, root};
-	const double slope[RS_FIELDS] = {1.5 * root, 0.0, 0.0, 0.0, 0.5 / root, 0.5 / root};
+	const double slope[RS_FIELDS] = {1.5 * root, 0.0, 0.0, 0.0, 0.5 * inverse, 0.5 * inverse};
 	for (int k = 0; k < RS_FIELDS; k++) {
 		double by_tau = power[k] * f[BY_TAU][k], by_p = slope[k] * f[VALUE][k];
 		out[0][k] = power[k] * f[VALUE][k];
-		out[1][k] = power[k] * f[BY_SHIFT][k] + tau->d[0] * by_tau + p->d[0] * by_p;
-		out[2][k] = power[k] * f[BY_ROLL][k] + tau->d[1] * by_tau + p->d[1] * by_p - radius * out[1][k];
-		out[3][k] = tau->d[2] * by_tau + p->d[2] * by_p;
-		out[4][k] = tau->d[3] * by_tau + p->d[3] * by_p;
+		out[1][k] = power[k] * f[BY_SHIFT][k] + tau[0] * by_tau + p->d[0] * by_p;
+		out[2][k] = power[k] * f[BY_ROLL][k] + tau[1] * by_tau + p->d[1] * by_p - radius * out[1][k];
+		out[3][k] = tau[2] * by_tau + p->d[2] * by_p;
+		out[4][k] = tau[3] * by_tau + p->d[3] * by_p;
 	}
 }
 
@@ -170,8 +171,9 @@ INLINE void take(const double (*from)[RS_FIELDS], int field, double *to)
  * axle: of the angle itself, so that the normal meets the axle. */
 INLINE void turn(double yaw, const double *slope_angle, rs_patch *patch)
 {
-	double t = tan(slope_angle[0]), t_angle = 1.0 + t * t, r = patch->radius[0], square = yaw * yaw, arm = r * t, half = 0.5 * arm * t;
-	double arm_slope[5], half_slope[5];
+	double sine, cosine, arm_slope[5], half_slope[5];
+	rs_sine_cosine(slope_angle[0], &sine, &cosine);
+	double t = sine / cosine, t_angle = 1.0 + t * t, r = patch->radius[0], square = yaw * yaw, arm = r * t, half = 0.5 * arm * t;
 	for (int k = 1; k < 5; k++) {
 		double dt = t_angle * slope_angle[k];
 		arm_slope[k] = patch->radius[k] * t + r * dt;
@@ -202,15 +204,12 @@ INLINE cell level_of(const rs_contact_table *t, double tau)
 INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const slopes *p, const double *place,
                        rs_patch *patch)
 {
-	double root = sqrt(p->v), deepest = sqrt(t->deepest), r0 = t->wheel_radius;
+	double root = sqrt(p->v), inverse = 1.0 / root, half = 0.5 * t->inverse_root * inverse;
+	double out[5][RS_FIELDS], tau[4] = {half * p->d[0], half * p->d[1], half * p->d[2], half * p->d[3]}; /* slopes of tau */
 	row rows[FIELD_SLOPES];
-	double out[5][RS_FIELDS];
-	slopes tau = {root / deepest, {0.0}};
-	for (int k = 0; k < 4; k++)
-		tau.d[k] = p->d[k] / (2.0 * deepest * root);
-	cell level = level_of(t, tau.v);
+	cell level = level_of(t, root * t->inverse_root);
 	read_field(t, zone, shift, roll, &level, rows);
-	chain((const double (*)[RS_FIELDS])rows, &tau, p, root, r0, out);
+	chain((const double (*)[RS_FIELDS])rows, tau, p, root, inverse, t->wheel_radius, out);
 	take((const double (*)[RS_FIELDS])out, RS_STIFFNESS, patch->load);
 	take((const double (*)[RS_FIELDS])out, RS_ACROSS, patch->across);
 	take((const double (*)[RS_FIELDS])out, RS_RADIUS, patch->radius);
@@ -228,7 +227,7 @@ INLINE void read_patch_values(const rs_contact_table *t, int zone, const cell *s
                               rs_patch *patch)
 {
 	double root = sqrt(p), yaw = place[3], square = yaw * yaw;
-	cell level = level_of(t, root / sqrt(t->deepest));
+	cell level = level_of(t, root * t->inverse_root);
 	row value;
 	read_field_value(t, zone, shift, roll, &level, &value);
 	const double *f = (const double *)&value;
@@ -262,7 +261,7 @@ INLINE int look_up(const rs_contact_table *t, const double *place, int with_slop
 		return RS_NOT_FINITE;
 	if (!locate(&t->roll, place[1], &roll, &at))
 		return refuse(1, beyond);
-	at = (eta - t->shift.start) / t->shift.step;
+	at = (eta - t->shift.start) * t->shift.inverse;
 	if (!(at >= 1.0 && at <= t->shift.count - 2))
 		return refuse(0, beyond);
 	for (int z = 0; z < t->zones; z++) {
@@ -270,7 +269,7 @@ INLINE int look_up(const rs_contact_table *t, const double *place, int with_slop
 		p[z].v = 0.0;
 		if (!locate(&t->zone[z].shift, eta, &shift[z], &at))
 			continue; /* the zone cannot touch here */
-		weigh_twice(at, 1.0 / t->zone[z].shift.step, twice);
+		weigh_twice(at, t->zone[z].shift.inverse, twice);
 		read_closure(t, z, &shift[z], twice, &roll, closure);
 		p[z] = penetration((const double (*)[RS_CLOSURE])closure, place[2], place[3]);
 		if (!(p[z].v <= t->deepest))

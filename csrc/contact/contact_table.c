@@ -2,6 +2,7 @@
 /* Memory of a contact table: made from arrays, and given back as arrays, so that it can be kept in a file. */
 #include "contact_table.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,9 +25,14 @@ static double *zeros(size_t count)
 	return room;
 }
 
+rs_axis rs_axis_of(double start, double step, int count)
+{
+	return (rs_axis){start, step, 1.0 / step, count};
+}
+
 static rs_axis axis_of(const double *numbers)
 {
-	return (rs_axis){numbers[0], numbers[1], (int)numbers[2]};
+	return rs_axis_of(numbers[0], numbers[1], (int)numbers[2]);
 }
 
 static int is_axis(const rs_axis *axis)
@@ -45,6 +51,7 @@ rs_contact_table *rs_contact_table_allocate(const double *shape)
 	t->levels = (int)shape[6];
 	t->zones = (int)shape[7];
 	t->deepest = shape[8];
+	t->inverse_root = 1.0 / sqrt(t->deepest);
 	t->wheel_radius = shape[9];
 	t->spacing = shape[10];
 	return t;

@@ -28,7 +28,7 @@ enum { RS_FIELDS = 8, RS_CLOSURE = 4 };
 enum { RS_STIFFNESS, RS_ACROSS, RS_RADIUS, RS_ANGLE, RS_LENGTH, RS_WIDTH }; /* fields of a zone */
 
 typedef struct {
-	double start, step;
+	double start, step, inverse; /* inverse: 1/step */
 	int count;              /* nodes, one more at each end than the range that may be read */
 } rs_axis;
 
@@ -43,6 +43,7 @@ struct rs_contact_table {
 	int levels;             /* nodes of tau: one before 0, 0, 1/m ... 1, one beyond: m + 3 */
 	int zones;
 	double deepest;         /* p_max, m */
+	double inverse_root;    /* 1/sqrt(p_max) */
 	double wheel_radius;    /* r0, m */
 	double spacing;         /* lateral place of the tape circle, m */
 	rs_zone_table zone[RS_ZONES];
@@ -51,6 +52,7 @@ struct rs_contact_table {
 /* As rs_contact_lookup, the values [0] only, the same to rounding; slopes are not touched. */
 int rs_contact_lookup_values(const rs_contact_table *table, const double *place, rs_patch *patch, int *count, int *beyond);
 
+rs_axis rs_axis_of(double start, double step, int count);
 rs_contact_table *rs_contact_table_allocate(const double *shape);
 int rs_zone_table_allocate(rs_contact_table *table, int zone);
 
