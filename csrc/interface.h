@@ -123,7 +123,7 @@ int rs_contact_table_check(const double *shape);
 int rs_contact_table_build(const rs_surfaces *from, const double *shape, const double *cuts, const int *parts,
                            double modulus, rs_contact_table **made, int *failures);
 int rs_contact_table_of_arrays(const double *shape, const double *axes, const double *const *closure,
-                               const double *const *field, rs_contact_table **made);
+                               const double *const *field, int values, rs_contact_table **made);
 void rs_contact_table_shape(const rs_contact_table *table, double *shape, double *axes);
 void rs_contact_table_arrays(const rs_contact_table *table, int zone, double *closure, double *field);
 void rs_contact_table_free(rs_contact_table *table);

@@ -102,7 +102,8 @@
  *   Returned  made     the table, or NULL; free with rs_contact_table_free
  *             failures nodes whose patch could not be computed; there the table ends
  *   Status    RS_OK, RS_BAD_SIZE, RS_NO_MEMORY
- * rs_contact_table_of_arrays   a table from what rs_contact_table_shape and rs_contact_table_arrays gave (copied)
+ * rs_contact_table_of_arrays   a table from what rs_contact_table_shape and rs_contact_table_arrays gave (copied); values: 1 where
+ *                      the fields are values at the nodes, and not yet what is read
  *   Status    RS_OK, RS_BAD_SIZE, RS_NO_MEMORY
  * rs_contact_lookup    patches of one wheel
  *   Given     table    never written to after it is made: any number of threads may read it

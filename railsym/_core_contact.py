@@ -74,8 +74,8 @@ class Table:
         return cls(made[0], failures[0])
 
     @classmethod
-    def of_arrays(cls, shape, axes, closures, fields):
-        """From `shape`, `axes` and one array of each a zone, as `arrays` returns them."""
+    def of_arrays(cls, shape, axes, closures, fields, values=False):
+        """From `shape`, `axes` and one array of each a zone, as `arrays` returns them; ``values``: fields are values at the nodes."""
         shape, axes = _vector(shape, len(SHAPE), "shape of a contact table"), np.ascontiguousarray(axes, dtype=float).reshape(-1, 3)
         rolls, levels, zones = (int(shape[SHAPE.index(name)]) for name in ("rolls", "levels", "zones"))
         if not len(axes) == len(closures) == len(fields) == zones:
@@ -84,7 +84,7 @@ class Table:
                 for axis, c, f in zip(axes, closures, fields)]
         pointers = [ffi.new("double *[]", [ffi.cast("double *", ffi.from_buffer(pair[k])) for pair in keep]) for k in range(2)]
         made = ffi.new("rs_contact_table **")
-        _check(lib.rs_contact_table_of_arrays(_doubles(shape), _doubles(axes), *pointers, made), "contact table from arrays")
+        _check(lib.rs_contact_table_of_arrays(_doubles(shape), _doubles(axes), *pointers, int(values), made), "contact table from arrays")
         return cls(made[0])
 
     def value(self, name):

@@ -94,7 +94,7 @@ def _core_table(eta, closure, columns, radius, half_spacing):
         for k, values in enumerate(_fields(columns, slope_angle, normal)):
             field[:, :, level, k] = at(values)[:, None]
     shape = [nodes[0], _STEP, len(nodes), rolls[0], _ROLL_STEP, _ROLLS, _LEVELS + 3, 1, deepest, radius, half_spacing]
-    return core.Table.of_arrays(shape, [[nodes[0], _STEP, len(nodes)]], [c], [field])
+    return core.Table.of_arrays(shape, [[nodes[0], _STEP, len(nodes)]], [c], [field], values=True)
 
 
 def _fields(columns, slope_angle, normal):

@@ -15,7 +15,7 @@ from railsym import _core_contact as core
 from railsym.contact_table import ContactTable, WheelTable
 from railsym.errors import ContactError
 
-_FORMAT = 1
+_FORMAT = 2         # 2: fields as coefficients of splines
 _NUMBERS = ("tape_circle_spacing", "wheel_radius", "wheel_radius_left")
 COLUMNS = ("lateral_shift_m", "normal_load_N", "contact_angle_rad", "a_m", "b_m", "lateral_distance_m", "rolling_radius_m", "c11", "c22", "c23",
            "penetration_m")

@@ -55,7 +55,7 @@ def test_damaged_and_missing_files(tmp_path):
     with pytest.raises(ContactError, match="there is no contact table"):
         rs.load_contact_table(tmp_path / "none.npz")
     np.savez(path, format=99)
-    with pytest.raises(ContactError, match="format 99; this railsym reads 1"):
+    with pytest.raises(ContactError, match="format 99; this railsym reads 2"):
         rs.load_contact_table(path)
     np.savez(path, something=1)
     with pytest.raises(ContactError, match="is not a contact table of railsym"):

@@ -297,7 +297,7 @@ static int build(builder *b, const int *parts)
 		fill_zone(b, z);
 		free(b->kind);
 	}
-	return RS_OK;
+	return rs_contact_table_filter(t);
 }
 
 int rs_contact_table_build(const rs_surfaces *from, const double *shape, const double *cuts, const int *parts, double modulus,

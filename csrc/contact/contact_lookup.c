@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Reading a contact table: cubics over shift, roll and penetration (contact_table.h), with exact slopes of the interpolant.
+/* Reading a contact table: splines over shift, roll and penetration (contact_table.h), with exact slopes of the interpolant.
  *
  * In wheelset axes the outline of a wheel yawed by psi is touched x = r t psi ahead of its centre (t the slope of the contact
  * plane to the axle), where it is lower by psi^2/2 t (r t - Y') (to the second order in psi).
  */
 #include <math.h>
-#include <string.h>
+#include <stddef.h>
 
 #include "../trigonometry.h"
 #include "rows.h"
@@ -13,93 +13,86 @@
 #define INLINE static RS_ALWAYS_INLINE
 #define LEAST_TAU 1e-6 /* less is no contact: the load is below 1e-18 of that at the deepest level */
 
+/* Three coefficients of a quadratic B-spline. */
 typedef struct {
-	int node;                        /* first of four */
-	double w[4], d[4];               /* weights of value and slope */
-} cell;
+	int node;                        /* first of three */
+	double w[3], d[3];               /* weights of value and slope */
+} knot;
 
-/* Weights of a cubic through nodes 1 and 2 whose slopes there are the central differences. */
-INLINE void weigh(double t, double inverse_step, cell *c)
+/* x: place in nodes; the nearest node is the middle one of the three. */
+INLINE knot knot_at(double x, double inverse_step)
 {
-	double s = t * t, half = 0.5 * inverse_step;
-	c->w[0] = t * (-0.5 + t * (1.0 - 0.5 * t));
-	c->w[1] = 1.0 + s * (-2.5 + 1.5 * t);
-	c->w[2] = t * (0.5 + t * (2.0 - 1.5 * t));
-	c->w[3] = s * (-0.5 + 0.5 * t);
-	c->d[0] = half * (-1.0 + t * (4.0 - 3.0 * t));
-	c->d[1] = half * t * (-10.0 + 9.0 * t);
-	c->d[2] = half * (1.0 + t * (8.0 - 9.0 * t));
-	c->d[3] = half * t * (-2.0 + 3.0 * t);
+	int middle = (int)(x + 0.5);
+	double t = x - middle, below = 0.5 - t, above = 0.5 + t;
+	return (knot){middle - 1, {0.5 * below * below, 0.75 - t * t, 0.5 * above * above},
+	              {-below * inverse_step, -2.0 * t * inverse_step, above * inverse_step}};
 }
 
-/* Where x lies on an axis, in nodes; 0 where it is outside the range that may be read. */
-INLINE int locate(const rs_axis *axis, double x, cell *c, double *t)
+/* 0 where x is outside the range that may be read. */
+INLINE int locate(const rs_axis *axis, double x, knot *k)
 {
 	double place = (x - axis->start) * axis->inverse;
 	if (!(place >= 1.0 && place <= axis->count - 2))
 		return 0;
-	int k = (int)place;
-	k = k > axis->count - 3 ? axis->count - 3 : k;
-	c->node = k - 1;
-	*t = place - k;
-	weigh(*t, axis->inverse, c);
+	*k = knot_at(place, axis->inverse);
 	return 1;
-}
-
-INLINE void weigh_twice(double t, double inverse_step, double *dd)
-{
-	double qq = inverse_step * inverse_step;
-	dd[0] = qq * (2.0 - 3.0 * t);
-	dd[1] = qq * (-5.0 + 9.0 * t);
-	dd[2] = qq * (4.0 - 9.0 * t);
-	dd[3] = qq * (-1.0 + 3.0 * t);
 }
 
 enum { VALUE, BY_SHIFT, BY_ROLL, TWICE_BY_SHIFT, BY_BOTH, CLOSURES }; /* of c, s, r, Y' */
 enum { BY_TAU = 3, FIELD_SLOPES };                                     /* of the fields, after the first three */
 
-INLINE void read_closure(const rs_contact_table *t, int zone, const cell *shift, const double *twice, const cell *roll, half_row *out)
+INLINE void read_closure(const rs_contact_table *t, int zone, const knot *shift, const knot *roll, half_row *out)
 {
 	const half_row *first = (const half_row *)t->zone[zone].closure + (size_t)shift->node * (size_t)t->roll.count + (size_t)roll->node;
-	memset(out, 0, CLOSURES * sizeof *out);
-	for (int i = 0; i < 4; i++) {
+	double square = t->zone[zone].shift.inverse * t->zone[zone].shift.inverse, twice[3] = {square, -2.0 * square, square};
+	half_row value = {0}, by_shift = {0}, by_roll = {0}, second = {0}, both = {0};
+	for (int i = 0; i < 3; i++) {
 		const half_row *node = first + (size_t)i * (size_t)t->roll.count;
-		half_row value = {0}, by_roll = {0};
-		for (int j = 0; j < 4; j++) {
-			ADD_SCALED(value, roll->w[j], node[j]);
-			ADD_SCALED(by_roll, roll->d[j], node[j]);
+		half_row here = {0}, slope = {0};
+		for (int j = 0; j < 3; j++) {
+			ADD_SCALED(here, roll->w[j], node[j]);
+			ADD_SCALED(slope, roll->d[j], node[j]);
 		}
-		ADD_SCALED(out[VALUE], shift->w[i], value);
-		ADD_SCALED(out[BY_SHIFT], shift->d[i], value);
-		ADD_SCALED(out[BY_ROLL], shift->w[i], by_roll);
-		ADD_SCALED(out[TWICE_BY_SHIFT], twice[i], value);
-		ADD_SCALED(out[BY_BOTH], shift->d[i], by_roll);
+		ADD_SCALED(value, shift->w[i], here);
+		ADD_SCALED(by_shift, shift->d[i], here);
+		ADD_SCALED(by_roll, shift->w[i], slope);
+		ADD_SCALED(second, twice[i], here);
+		ADD_SCALED(both, shift->d[i], slope);
 	}
+	out[VALUE] = value;
+	out[BY_SHIFT] = by_shift;
+	out[BY_ROLL] = by_roll;
+	out[TWICE_BY_SHIFT] = second;
+	out[BY_BOTH] = both;
+}
+
+INLINE const row *first_node(const rs_contact_table *t, int zone, const knot *shift, const knot *roll, const knot *level)
+{
+	return (const row *)t->zone[zone].field + ((size_t)shift->node * (size_t)t->roll.count + (size_t)roll->node) * (size_t)t->levels + (size_t)level->node;
 }
 
 /* Level by level over shift and roll for the value and its slope over tau; node by node over the levels for the other slopes. */
-INLINE void read_field(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const cell *level, row *out)
+INLINE void read_field(const rs_contact_table *t, int zone, const knot *shift, const knot *roll, const knot *level, row *out)
 {
 	size_t along = (size_t)t->levels, across = along * (size_t)t->roll.count;
-	const row *first = (const row *)t->zone[zone].field + (size_t)shift->node * across + (size_t)roll->node * along + (size_t)level->node;
-	row at[4] = {{0}}, by_shift = {0}, by_roll = {0};
-	for (int i = 0; i < 4; i++) {
-		row value = {0};
-		for (int j = 0; j < 4; j++) {
+	const row *first = first_node(t, zone, shift, roll, level);
+	row at[3] = {{0}}, by_shift = {0}, by_roll = {0}, value = {0}, by_tau = {0};
+	for (int i = 0; i < 3; i++) {
+		row sum = {0};
+		for (int j = 0; j < 3; j++) {
 			const row *node = first + (size_t)i * across + (size_t)j * along;
 			double weight = shift->w[i] * roll->w[j];
 			row here = {0};
-			for (int k = 0; k < 4; k++) {
+			for (int k = 0; k < 3; k++) {
 				ADD_SCALED(here, level->w[k], node[k]);
 				ADD_SCALED(at[k], weight, node[k]);
 			}
-			ADD_SCALED(value, roll->w[j], here);
+			ADD_SCALED(sum, roll->w[j], here);
 			ADD_SCALED(by_roll, shift->w[i] * roll->d[j], here);
 		}
-		ADD_SCALED(by_shift, shift->d[i], value);
+		ADD_SCALED(by_shift, shift->d[i], sum);
 	}
-	row value = {0}, by_tau = {0};
-	for (int k = 0; k < 4; k++) {
+	for (int k = 0; k < 3; k++) {
 		ADD_SCALED(value, level->w[k], at[k]);
 		ADD_SCALED(by_tau, level->d[k], at[k]);
 	}
@@ -110,19 +103,19 @@ INLINE void read_field(const rs_contact_table *t, int zone, const cell *shift, c
 }
 
 /* The value alone, added up as in read_field. */
-INLINE void read_field_value(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const cell *level, row *value)
+INLINE void read_field_value(const rs_contact_table *t, int zone, const knot *shift, const knot *roll, const knot *level, row *value)
 {
 	size_t along = (size_t)t->levels, across = along * (size_t)t->roll.count;
-	const row *first = (const row *)t->zone[zone].field + (size_t)shift->node * across + (size_t)roll->node * along + (size_t)level->node;
-	row at[4] = {{0}}, sum = {0};
-	for (int i = 0; i < 4; i++)
-		for (int j = 0; j < 4; j++) {
+	const row *first = first_node(t, zone, shift, roll, level);
+	row at[3] = {{0}}, sum = {0};
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++) {
 			const row *node = first + (size_t)i * across + (size_t)j * along;
 			double weight = shift->w[i] * roll->w[j];
-			for (int k = 0; k < 4; k++)
+			for (int k = 0; k < 3; k++)
 				ADD_SCALED(at[k], weight, node[k]);
 		}
-	for (int k = 0; k < 4; k++)
+	for (int k = 0; k < 3; k++)
 		ADD_SCALED(sum, level->w[k], at[k]);
 	*value = sum;
 }
@@ -146,19 +139,21 @@ INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw
 
 /* Values of all fields with their slopes over (y, roll, drop, yaw), load and semi-axes with their power of p: column 0 of out,
  * then 1 to 4. d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
-INLINE void chain(const double (*f)[RS_FIELDS], const double *tau, const slopes *p, double root, double inverse, double radius,
-                  double (*out)[RS_FIELDS])
+INLINE void chain(const row *f, const double *tau, const slopes *p, double root, double inverse, double radius, row *out)
 {
-	const double power[RS_FIELDS] = {p->v * root, 1.0, 1.0, 1.0, root, root};
-	const double slope[RS_FIELDS] = {1.5 * root, 0.0, 0.0, 0.0, 0.5 * inverse, 0.5 * inverse};
-	for (int k = 0; k < RS_FIELDS; k++) {
-		double by_tau = power[k] * f[BY_TAU][k], by_p = slope[k] * f[VALUE][k];
-		out[0][k] = power[k] * f[VALUE][k];
-		out[1][k] = power[k] * f[BY_SHIFT][k] + tau[0] * by_tau + p->d[0] * by_p;
-		out[2][k] = power[k] * f[BY_ROLL][k] + tau[1] * by_tau + p->d[1] * by_p - radius * out[1][k];
-		out[3][k] = tau[2] * by_tau + p->d[2] * by_p;
-		out[4][k] = tau[3] * by_tau + p->d[3] * by_p;
+	const row power = {p->v * root, 1.0, 1.0, 1.0, root, root}, slope = {1.5 * root, 0.0, 0.0, 0.0, 0.5 * inverse, 0.5 * inverse};
+	row by_tau, by_p;
+	MULTIPLY(by_tau, power, f[BY_TAU]);
+	MULTIPLY(by_p, slope, f[VALUE]);
+	MULTIPLY(out[0], power, f[VALUE]);
+	MULTIPLY(out[1], power, f[BY_SHIFT]);
+	MULTIPLY(out[2], power, f[BY_ROLL]);
+	out[3] = out[4] = (row){0};
+	for (int k = 0; k < 4; k++) {
+		ADD_SCALED(out[1 + k], tau[k], by_tau);
+		ADD_SCALED(out[1 + k], p->d[k], by_p);
 	}
+	ADD_SCALED(out[2], -radius, out[1]);
 }
 
 INLINE void take(const double (*from)[RS_FIELDS], int field, double *to)
@@ -192,24 +187,22 @@ INLINE void turn(double yaw, const double *slope_angle, rs_patch *patch)
 	patch->radius[4] += 2.0 * half * yaw;
 }
 
-INLINE cell level_of(const rs_contact_table *t, double tau)
+/* Level 1 is tau = 0. */
+INLINE knot level_of(const rs_contact_table *t, double tau)
 {
-	int parts = t->levels - 3, k = (int)(tau * parts);
-	cell level;
-	level.node = k < parts ? k : parts - 1;
-	weigh(tau * parts - level.node, parts, &level);
-	return level;
+	int parts = t->levels - 3;
+	return knot_at(1.0 + tau * parts, parts);
 }
 
-INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, const slopes *p, const double *place,
+INLINE void read_patch(const rs_contact_table *t, int zone, const knot *shift, const knot *roll, const slopes *p, const double *place,
                        rs_patch *patch)
 {
 	double root = sqrt(p->v), inverse = 1.0 / root, half = 0.5 * t->inverse_root * inverse;
-	double out[5][RS_FIELDS], tau[4] = {half * p->d[0], half * p->d[1], half * p->d[2], half * p->d[3]}; /* slopes of tau */
-	row rows[FIELD_SLOPES];
-	cell level = level_of(t, root * t->inverse_root);
+	double tau[4] = {half * p->d[0], half * p->d[1], half * p->d[2], half * p->d[3]}; /* slopes of tau */
+	row rows[FIELD_SLOPES], out[5];
+	knot level = level_of(t, root * t->inverse_root);
 	read_field(t, zone, shift, roll, &level, rows);
-	chain((const double (*)[RS_FIELDS])rows, tau, p, root, inverse, t->wheel_radius, out);
+	chain(rows, tau, p, root, inverse, t->wheel_radius, out);
 	take((const double (*)[RS_FIELDS])out, RS_STIFFNESS, patch->load);
 	take((const double (*)[RS_FIELDS])out, RS_ACROSS, patch->across);
 	take((const double (*)[RS_FIELDS])out, RS_RADIUS, patch->radius);
@@ -223,11 +216,11 @@ INLINE void read_patch(const rs_contact_table *t, int zone, const cell *shift, c
 }
 
 /* The same without slopes: the numbers [0] of the patch. */
-INLINE void read_patch_values(const rs_contact_table *t, int zone, const cell *shift, const cell *roll, double p, const double *place,
+INLINE void read_patch_values(const rs_contact_table *t, int zone, const knot *shift, const knot *roll, double p, const double *place,
                               rs_patch *patch)
 {
 	double root = sqrt(p), yaw = place[3], square = yaw * yaw;
-	cell level = level_of(t, root * t->inverse_root);
+	knot level = level_of(t, root * t->inverse_root);
 	row value;
 	read_field_value(t, zone, shift, roll, &level, &value);
 	const double *f = (const double *)&value;
@@ -244,36 +237,32 @@ INLINE void read_patch_values(const rs_contact_table *t, int zone, const cell *s
 	patch->zone = zone;
 }
 
-static int refuse(int which, int *beyond)
+/* What is no number is outside every range, and told apart only here. */
+static int refuse(const double *place, int which, int *beyond)
 {
 	*beyond = which;
-	return RS_OUT_OF_TABLE;
+	return isfinite(place[0] + place[1] + place[2] + place[3]) ? RS_OUT_OF_TABLE : RS_NOT_FINITE;
 }
 
 INLINE int look_up(const rs_contact_table *t, const double *place, int with_slopes, rs_patch *patch, int *count, int *beyond)
 {
-	cell shift[RS_ZONES], roll;
-	double at, twice[4];
+	knot shift[RS_ZONES], roll;
 	slopes p[RS_ZONES];
-	double eta = place[0] - t->wheel_radius * place[1];
+	double eta = place[0] - t->wheel_radius * place[1], at = (eta - t->shift.start) * t->shift.inverse;
 	*count = 0;
-	if (!isfinite(place[0] + place[1] + place[2] + place[3]))
-		return RS_NOT_FINITE;
-	if (!locate(&t->roll, place[1], &roll, &at))
-		return refuse(1, beyond);
-	at = (eta - t->shift.start) * t->shift.inverse;
+	if (!locate(&t->roll, place[1], &roll))
+		return refuse(place, 1, beyond);
 	if (!(at >= 1.0 && at <= t->shift.count - 2))
-		return refuse(0, beyond);
+		return refuse(place, 0, beyond);
 	for (int z = 0; z < t->zones; z++) {
 		half_row closure[CLOSURES];
 		p[z].v = 0.0;
-		if (!locate(&t->zone[z].shift, eta, &shift[z], &at))
+		if (!locate(&t->zone[z].shift, eta, &shift[z]))
 			continue; /* the zone cannot touch here */
-		weigh_twice(at, t->zone[z].shift.inverse, twice);
-		read_closure(t, z, &shift[z], twice, &roll, closure);
+		read_closure(t, z, &shift[z], &roll, closure);
 		p[z] = penetration((const double (*)[RS_CLOSURE])closure, place[2], place[3]);
 		if (!(p[z].v <= t->deepest))
-			return refuse(2, beyond);
+			return refuse(place, 2, beyond);
 	}
 	for (int z = 0; z < t->zones; z++)
 		if (p[z].v > LEAST_TAU * LEAST_TAU * t->deepest) {
@@ -283,7 +272,7 @@ INLINE int look_up(const rs_contact_table *t, const double *place, int with_slop
 				read_patch_values(t, z, &shift[z], &roll, p[z].v, place, patch + *count);
 			if (!isfinite(patch[*count].load[0])) { /* a zone that meets the rail beyond an end of a profile */
 				*count = 0;
-				return refuse(0, beyond);
+				return refuse(place, 0, beyond);
 			}
 			(*count)++;
 		}
@@ -300,12 +289,12 @@ RS_CLONES int rs_contact_lookup_values(const rs_contact_table *t, const double *
 	return look_up(t, place, 0, patch, count, beyond);
 }
 
-int rs_contact_lookup_many(const rs_contact_table *t, int n, const double *place, rs_patch *patch, int *count, int *beyond)
+RS_CLONES int rs_contact_lookup_many(const rs_contact_table *t, int n, const double *place, rs_patch *patch, int *count, int *beyond)
 {
 	int worst = RS_OK;
 	for (int k = 0; k < n; k++) {
 		beyond[k] = -1;
-		int status = rs_contact_lookup(t, place + RS_PLACE_SIZE * (size_t)k, patch + RS_ZONES * (size_t)k, count + k, beyond + k);
+		int status = look_up(t, place + RS_PLACE_SIZE * (size_t)k, 1, patch + RS_ZONES * (size_t)k, count + k, beyond + k);
 		if (status == RS_NOT_FINITE)
 			beyond[k] = RS_PLACE_SIZE;
 		worst = status != RS_OK ? status : worst;

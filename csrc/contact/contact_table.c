@@ -107,7 +107,7 @@ void rs_contact_table_arrays(const rs_contact_table *t, int zone, double *closur
 }
 
 int rs_contact_table_of_arrays(const double *shape, const double *axes, const double *const *closure, const double *const *field,
-                               rs_contact_table **made)
+                               int values, rs_contact_table **made)
 {
 	*made = NULL;
 	if (rs_contact_table_check(shape) != RS_OK)
@@ -122,6 +122,8 @@ int rs_contact_table_of_arrays(const double *shape, const double *axes, const do
 		memcpy(t->zone[z].closure, closure[z], closure_size(t, z) * sizeof(double));
 		memcpy(t->zone[z].field, field[z], field_size(t, z) * sizeof(double));
 	}
+	if (status == RS_OK && values)
+		status = rs_contact_table_filter(t);
 	if (status == RS_OK)
 		*made = t;
 	else

@@ -15,8 +15,7 @@
  * (c: drop at which a zone touches; s, r, Y': cosine of the contact angle, radius and place on the wheel
  * there; the term with yaw: the outline of a yawed wheel, to the second order), a zone carries load K p^(3/2), and K, the place of the contact,
  * its angle, and a/p^(1/2), b/p^(1/2) are tabled over (eta, roll, tau) from the elastic contact of
- * strips.c. Between the nodes they are cubics with the nodes' central differences as slopes
- * (Catmull-Rom): continuous with continuous slopes. Each zone has its own nodes of eta, over the range
+ * strips.c. Between the nodes all of them are quadratic splines (contact_spline.c): continuous with continuous slopes. Each zone has its own nodes of eta, over the range
  * where it can touch before the wheel is beyond the deepest penetration; outside it the zone is in the air.
  */
 #ifndef RS_CONTACT_TABLE_H
@@ -34,8 +33,8 @@ typedef struct {
 
 typedef struct {
 	rs_axis shift;
-	double *closure;        /* shift x roll x RS_CLOSURE: c, s, radius and place on the wheel of rigid contact */
-	double *field;          /* shift x roll x level x RS_FIELDS; a stiffness that is not a number: off the rail */
+	double *closure;        /* shift x roll x RS_CLOSURE, coefficients of splines: c, s, radius and place on the wheel of rigid contact */
+	double *field;          /* shift x roll x level x RS_FIELDS, coefficients of splines; a stiffness that is not a number: off the rail */
 } rs_zone_table;
 
 struct rs_contact_table {
@@ -54,6 +53,8 @@ int rs_contact_lookup_values(const rs_contact_table *table, const double *place,
 
 rs_axis rs_axis_of(double start, double step, int count);
 rs_contact_table *rs_contact_table_allocate(const double *shape);
+/* Values at the nodes to what is read (contact_spline.c). RS_OK, RS_NO_MEMORY. */
+int rs_contact_table_filter(rs_contact_table *table);
 int rs_zone_table_allocate(rs_contact_table *table, int zone);
 
 #endif
