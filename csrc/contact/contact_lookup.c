@@ -13,6 +13,8 @@
 #define INLINE static RS_ALWAYS_INLINE
 #define LEAST_TAU 1e-6 /* less is no contact: the load is below 1e-18 of that at the deepest level */
 
+enum { BATCH = 8 };
+
 /* Three coefficients of a quadratic B-spline. */
 typedef struct {
 	int node;                        /* first of three */
@@ -244,32 +246,41 @@ static int refuse(const double *place, int which, int *beyond)
 	return isfinite(place[0] + place[1] + place[2] + place[3]) ? RS_OUT_OF_TABLE : RS_NOT_FINITE;
 }
 
-INLINE int look_up(const rs_contact_table *t, const double *place, int with_slopes, rs_patch *patch, int *count, int *beyond)
-{
+/* A place found on the axes, and how deep each zone is. */
+typedef struct {
 	knot shift[RS_ZONES], roll;
 	slopes p[RS_ZONES];
+} found_place;
+
+INLINE int find_place(const rs_contact_table *t, const double *place, found_place *f, int *beyond)
+{
 	double eta = place[0] - t->wheel_radius * place[1], at = (eta - t->shift.start) * t->shift.inverse;
-	*count = 0;
-	if (!locate(&t->roll, place[1], &roll))
+	if (!locate(&t->roll, place[1], &f->roll))
 		return refuse(place, 1, beyond);
 	if (!(at >= 1.0 && at <= t->shift.count - 2))
 		return refuse(place, 0, beyond);
 	for (int z = 0; z < t->zones; z++) {
 		half_row closure[CLOSURES];
-		p[z].v = 0.0;
-		if (!locate(&t->zone[z].shift, eta, &shift[z]))
+		f->p[z].v = 0.0;
+		if (!locate(&t->zone[z].shift, eta, &f->shift[z]))
 			continue; /* the zone cannot touch here */
-		read_closure(t, z, &shift[z], &roll, closure);
-		p[z] = penetration((const double (*)[RS_CLOSURE])closure, place[2], place[3]);
-		if (!(p[z].v <= t->deepest))
+		read_closure(t, z, &f->shift[z], &f->roll, closure);
+		f->p[z] = penetration((const double (*)[RS_CLOSURE])closure, place[2], place[3]);
+		if (!(f->p[z].v <= t->deepest))
 			return refuse(place, 2, beyond);
 	}
+	return RS_OK;
+}
+
+INLINE int read_zones(const rs_contact_table *t, const double *place, const found_place *f, int with_slopes, rs_patch *patch, int *count,
+                      int *beyond)
+{
 	for (int z = 0; z < t->zones; z++)
-		if (p[z].v > LEAST_TAU * LEAST_TAU * t->deepest) {
+		if (f->p[z].v > LEAST_TAU * LEAST_TAU * t->deepest) {
 			if (with_slopes)
-				read_patch(t, z, &shift[z], &roll, &p[z], place, patch + *count);
+				read_patch(t, z, &f->shift[z], &f->roll, &f->p[z], place, patch + *count);
 			else
-				read_patch_values(t, z, &shift[z], &roll, p[z].v, place, patch + *count);
+				read_patch_values(t, z, &f->shift[z], &f->roll, f->p[z].v, place, patch + *count);
 			if (!isfinite(patch[*count].load[0])) { /* a zone that meets the rail beyond an end of a profile */
 				*count = 0;
 				return refuse(place, 0, beyond);
@@ -277,6 +288,14 @@ INLINE int look_up(const rs_contact_table *t, const double *place, int with_slop
 			(*count)++;
 		}
 	return RS_OK;
+}
+
+INLINE int look_up(const rs_contact_table *t, const double *place, int with_slopes, rs_patch *patch, int *count, int *beyond)
+{
+	found_place f;
+	*count = 0;
+	int status = find_place(t, place, &f, beyond);
+	return status == RS_OK ? read_zones(t, place, &f, with_slopes, patch, count, beyond) : status;
 }
 
 RS_CLONES int rs_contact_lookup(const rs_contact_table *t, const double *place, rs_patch *patch, int *count, int *beyond)
@@ -289,14 +308,32 @@ RS_CLONES int rs_contact_lookup_values(const rs_contact_table *t, const double *
 	return look_up(t, place, 0, patch, count, beyond);
 }
 
-RS_CLONES int rs_contact_lookup_many(const rs_contact_table *t, int n, const double *place, rs_patch *patch, int *count, int *beyond)
+/* First the places of a batch, then their patches: loops short enough for the processor to begin the next wheel meanwhile. */
+RS_CLONES static int look_up_batch(const rs_contact_table *t, int n, const double *place, rs_patch *patch, int *count, int *beyond)
+{
+	found_place f[BATCH];
+	int status[BATCH], worst = RS_OK;
+	for (int k = 0; k < n; k++)
+		status[k] = find_place(t, place + RS_PLACE_SIZE * k, f + k, beyond + k);
+	for (int k = 0; k < n; k++) {
+		if (status[k] == RS_OK)
+			status[k] = read_zones(t, place + RS_PLACE_SIZE * k, f + k, 1, patch + RS_ZONES * k, count + k, beyond + k);
+		if (status[k] == RS_NOT_FINITE)
+			beyond[k] = RS_PLACE_SIZE;
+		worst = status[k] != RS_OK ? status[k] : worst;
+	}
+	return worst;
+}
+
+int rs_contact_lookup_many(const rs_contact_table *t, int n, const double *place, rs_patch *patch, int *count, int *beyond)
 {
 	int worst = RS_OK;
 	for (int k = 0; k < n; k++) {
+		count[k] = 0;
 		beyond[k] = -1;
-		int status = look_up(t, place + RS_PLACE_SIZE * (size_t)k, 1, patch + RS_ZONES * (size_t)k, count + k, beyond + k);
-		if (status == RS_NOT_FINITE)
-			beyond[k] = RS_PLACE_SIZE;
+	}
+	for (int k = 0; k < n; k += BATCH) {
+		int status = look_up_batch(t, n - k < BATCH ? n - k : BATCH, place + RS_PLACE_SIZE * (size_t)k, patch + RS_ZONES * (size_t)k, count + k, beyond + k);
 		worst = status != RS_OK ? status : worst;
 	}
 	return worst;
