@@ -44,6 +44,7 @@ _MODULE_OF = {
     "sensitivity": "sensitivity",
     "simulate": "simulation",
     "stability_map": "stability_map",
+    "steady_state": "simulation",
     "switch_study": "studies",
     "track_modes": "tracking",
     "vehicles": "vehicle",

@@ -103,19 +103,58 @@ def quasi_static(vehicle, *, speed, track, places, contact="linear", channels=No
     """
     places = np.atleast_1d(np.asarray(places, dtype=float))
     simulation = Simulation(vehicle, speed=speed, track=track, contact=contact, channels=channels, markers=markers, start=float(places[0]), **forces)
-    parts, times = simulation.parts, (places - places[0]) / float(np.asarray(speed))
+    times, rows = (places - places[0]) / float(np.asarray(speed)), []
+    for time, (q, u) in zip(times, _equilibria(simulation, places, float(speed)), strict=True):
+        simulation.parts.integrator.start(time, q, u)
+        rows.append(simulation.recorder.values(np.array([time]), simulation.parts.integrator.sample()[0][None])[0])
+    info = simulation.info.ended(Ending("completed", time=float(times[-1]), distance=float(places[-1])), "quasi-static equilibria along the track")
+    return Run(times, np.array(rows), simulation.recorder.channels, info)
+
+
+def steady_state(vehicle, *, speed, track, place, contact="linear", begin=None, **forces):
+    """Coordinates and rates of the equilibrium at one place: what a run that begins in a curve starts from.
+
+        state = rs.steady_state(vehicle, speed=25.0, track=curve, place=120.0, contact=pair)
+        rs.simulate(vehicle, speed=25.0, track=curve, contact=pair, start=120.0, initial=state, ...)
+
+    Parameters
+    ----------
+    vehicle, speed, track, contact, forces
+        As `quasi_static`.
+    place : float
+        m, arc length of the vehicle's centre.
+    begin : float, optional
+        m, where the continuation begins, on a straight or near the beginning of the transition; where the foremost body stands at s = 0 if not
+        given.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n,)
+        q and u, for ``initial`` of `simulate`.
+
+    Raises
+    ------
+    ConvergenceError
+        As `quasi_static`.
+    """
+    foremost = max((body.position[0] for body in vehicle.bodies), default=0.0)
+    places = np.array([-foremost if begin is None else begin, place], dtype=float)
+    simulation = Simulation(vehicle, speed=speed, track=track, contact=contact, start=float(places[0]), **forces)
+    return list(_equilibria(simulation, places, float(speed)))[-1]
+
+
+def _equilibria(simulation, places, speed):
+    """q and u at each place, one after the other."""
+    parts, times = simulation.parts, (places - places[0]) / speed
     parts.check_track(float(times[-1]))
     parts.integrator._travel.set_steady()
     balance = _Balance(parts)
     q, u = parts.start()
-    x, now, rows = np.where(balance.spin, u, q), 0.0, []
+    x, now = np.where(balance.spin, u, q), 0.0
     for time in times:
-        x = _continued(balance, x, now, time, places[0], float(speed))
+        x = _continued(balance, x, now, time, places[0], speed)
         now = time
-        parts.integrator.start(time, *balance.state(x))
-        rows.append(simulation.recorder.values(np.array([time]), parts.integrator.sample()[0][None])[0])
-    info = simulation.info.ended(Ending("completed", time=float(times[-1]), distance=float(places[-1])), "quasi-static equilibria along the track")
-    return Run(times, np.array(rows), simulation.recorder.channels, info)
+        yield balance.state(x)
 
 
 def _continued(balance, x, start, end, first, speed):
