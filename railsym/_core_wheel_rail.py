@@ -18,6 +18,8 @@ PATCH = {"load": lib.RS_PATCH_LOAD, "xi": lib.RS_PATCH_XI, "eta": lib.RS_PATCH_X
          "across": lib.RS_PATCH_ACROSS, "radius": lib.RS_PATCH_RADIUS, "angle": lib.RS_PATCH_ANGLE,
          "a": lib.RS_PATCH_A, "b": lib.RS_PATCH_B}
 
+DEEPEST = 6e-4    # m, of tables made for motion: on rails that do not give way a flange strikes with several hundred kN for some milliseconds
+
 
 @dataclass(frozen=True)
 class Shape:
@@ -80,7 +82,7 @@ def table(wheel):
 def shape_of(contact, side):
     """Shape of one wheel (side -1, 1) of a contact: a ContactPair or its table, or anything with ``wheel_shape(side)``."""
     if isinstance(contact, ContactPair):
-        contact = contact.table()
+        contact = contact.table(deepest=DEEPEST)
     if isinstance(contact, ContactTable):
         return table(contact.left if side < 0 else contact.right)
     if not hasattr(contact, "wheel_shape"):

@@ -16,7 +16,7 @@ _PATH_STEP = 5e-5            # m of shift, of the rigid contact that is searched
 _JUMP = 0.1                  # rad: a jump of the contact angle that parts two zones, far more than the wheelset rolls
 _SHIFT_STEP = 2e-4           # m between the nodes of the tread
 _ROLL_STEP, _ROLL = 2.5e-3, 10e-3   # rad
-_LEVELS = 6                  # of sqrt(penetration)
+_LEVELS, _USUAL = 6, 3e-4    # of sqrt(penetration) down to a penetration (m); deeper tables have more, equally far apart
 _MOST_FAILURES = 0.01        # of the nodes: at edges of a profile, where the table then ends
 _FINE = (1, 4, 2)            # parts of a step of the shift: contact moves fastest through the flange root
 
@@ -65,8 +65,8 @@ def _side_table(side, modulus, deepest, reach):
     shift, across, angle = _path(side, made_of, reach)
     cuts = [np.inf, *_cuts(across, angle), -np.inf]
     half = int(round(min(-shift[0], shift[-1]) / _SHIFT_STEP)) - 1       # both directions: a left wheel meets what a right one leaves
-    rolls = int(round(_ROLL / _ROLL_STEP))
-    shape = [-(half + 1) * _SHIFT_STEP, _SHIFT_STEP, 2 * half + 3, -(rolls + 1) * _ROLL_STEP, _ROLL_STEP, 2 * rolls + 3, _LEVELS + 3,
+    rolls, levels = int(round(_ROLL / _ROLL_STEP)), max(_LEVELS, int(np.ceil(_LEVELS * np.sqrt(deepest / _USUAL))))
+    shape = [-(half + 1) * _SHIFT_STEP, _SHIFT_STEP, 2 * half + 3, -(rolls + 1) * _ROLL_STEP, _ROLL_STEP, 2 * rolls + 3, levels + 3,
              len(cuts) - 1, deepest, side.radius, side.tape_circle]
     table = core.Table.built(made_of, shape, cuts, _FINE[:len(cuts) - 1], modulus)
     nodes = table.axes[:, 2].sum() * table.value("rolls")

@@ -140,6 +140,29 @@ def test_controller_sets_forces_at_its_rate():
         bogie().run(0.01, controllers=[(lambda c: c.command("primary.x", 1.0), 100.0)])
 
 
+def test_a_c_controller_does_what_the_python_one_does():
+    """Called from the loop in C before every tenth step, by its pointer: the same bytes; and what it returns ends the run."""
+    from railsym._railsym import ffi
+
+    python, compiled, stopped = (bogie(initial=None) for _ in range(3))
+    number = python.parts.names.index("car.y")
+    python.run(0.1, controllers=[(lambda c: c.force("car.y", 1000.0 * (c.time < 0.05)), 100.0)])
+
+    def push(context, time, q, u, a):
+        compiled.parts.integrator.force[number] = 1000.0 * (time < 0.05 - 1e-9)
+        return 0
+
+    pointer = ffi.callback("rs_controller", push)
+    compiled.parts.integrator.set_controller(pointer, 10)
+    compiled.run(0.1)
+    assert np.array_equal(compiled.result()["car.y"], python.result()["car.y"])
+    ends = ffi.callback("rs_controller", lambda context, time, q, u, a: int(time > 0.0449))
+    stopped.parts.integrator.set_controller(ends, 10)
+    stopped.run(0.1)
+    assert stopped.ending.reason == "interrupted" and "controller stopped the run" in str(stopped.ending)
+    assert 0.04 < stopped.time < 0.06
+
+
 def test_not_finite_is_named():
     simulation = bogie()
     simulation.run(0.02)
