@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from railsym._core import CREEP_LAWS, _check, _doubles, _vector, ffi, lib
-from railsym.contact_pair import ContactPair
+from railsym.contact_pair import DEEPEST_IN_MOTION, ContactPair
 from railsym.contact_table import ContactTable, OutOfTableError
 from railsym.errors import ContactError
 
@@ -17,8 +17,6 @@ PATCH = {"load": lib.RS_PATCH_LOAD, "xi": lib.RS_PATCH_XI, "eta": lib.RS_PATCH_X
          "Fx": lib.RS_PATCH_FX, "Fy": lib.RS_PATCH_FX + 1, "Mz": lib.RS_PATCH_FX + 2, "x": lib.RS_PATCH_X,
          "across": lib.RS_PATCH_ACROSS, "radius": lib.RS_PATCH_RADIUS, "angle": lib.RS_PATCH_ANGLE,
          "a": lib.RS_PATCH_A, "b": lib.RS_PATCH_B}
-
-DEEPEST = 6e-4    # m, of tables made for motion: on rails that do not give way a flange strikes with several hundred kN for some milliseconds
 
 
 @dataclass(frozen=True)
@@ -82,7 +80,7 @@ def table(wheel):
 def shape_of(contact, side):
     """Shape of one wheel (side -1, 1) of a contact: a ContactPair or its table, or anything with ``wheel_shape(side)``."""
     if isinstance(contact, ContactPair):
-        contact = contact.table(deepest=DEEPEST)
+        contact = contact.table(deepest=DEEPEST_IN_MOTION)
     if isinstance(contact, ContactTable):
         return table(contact.left if side < 0 else contact.right)
     if not hasattr(contact, "wheel_shape"):

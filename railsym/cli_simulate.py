@@ -16,7 +16,6 @@ from railsym.cli_values import CommandError, quantity
 from railsym.plots.style import KMH
 
 _DURATION = 10.0     # s
-_DEEPEST = 6e-4      # m of penetration that the contact table covers: flanges strike a rail that does not give way
 _AHEAD = 5.0         # m of track beyond the end of a run, where the track is made for it
 _DRAWN = ("wheelset*.y", "*1.above_*.ay", "car*.a[yz]", "*.sum_Y")
 _FORMATS = {".nc": None, ".csv": "to_csv", ".mat": "to_mat"}
@@ -169,10 +168,12 @@ def _contact(options, vehicle):
         return contact, {}, f"linear contact of conicity {options.conicity:g}"
     if options.wheel is None and options.rail is None:
         options.wheel, options.rail = "S1002", "UIC60"
+    from railsym.contact_pair import DEEPEST_IN_MOTION
+
     found = pair_contacts(options, [vehicle])
     law = options.law or "fastsim"
     more = {"law": law} | ({} if options.friction is None else {"friction": options.friction})
-    return found.pair.table(deepest=_DEEPEST), more, f"{found.title}, {law}"
+    return found.pair.table(deepest=DEEPEST_IN_MOTION), more, f"{found.title}, {law}"
 
 
 def _check_files(options):

@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import difflib
-import os
-import tempfile
 import zipfile
 from pathlib import Path
 
@@ -14,12 +12,14 @@ import numpy as np
 from railsym import _core_contact as core
 from railsym.contact_table import ContactTable, WheelTable
 from railsym.errors import ContactError
+from railsym.results.errors import ResultFileError
+from railsym.results.files import replacing
 
 _FORMAT = 2         # 2: fields as coefficients of splines
 _NUMBERS = ("tape_circle_spacing", "wheel_radius", "wheel_radius_left")
 COLUMNS = ("lateral_shift_m", "normal_load_N", "contact_angle_rad", "a_m", "b_m", "lateral_distance_m", "rolling_radius_m", "c11", "c22", "c23",
            "penetration_m")
-_NEEDED = tuple(name for name in COLUMNS if not name.startswith("c11") and name not in ("c22", "c23"))
+_NEEDED = tuple(name for name in COLUMNS if name not in ("c11", "c22", "c23"))
 
 
 def save(table, path):
@@ -43,11 +43,9 @@ def save(table, path):
         for zone in range(len(own.axes)):
             content[f"{side}_closure{zone}"], content[f"{side}_field{zone}"] = own.arrays(zone)
     try:
-        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as file:
+        with replacing(path) as part, part.open("wb") as file:
             np.savez_compressed(file, **content)
-        os.replace(file.name, path)
-    except OSError as error:
-        Path(file.name).unlink(missing_ok=True) if "file" in locals() else None
+    except (ResultFileError, OSError) as error:
         raise ContactError(f"contact table cannot be written to {path}: {error}") from None
 
 

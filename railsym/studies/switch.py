@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from railsym.contact_pair import DEEPEST_IN_MOTION
 from railsym.errors import SimulationError
 from railsym.studies.quasi_linear import hunting_mode, mean_wheel_load, quasi_linear
 from railsym.studies.switch_run import cross
@@ -20,7 +21,6 @@ from railsym.track import Switch
 SWITCH = Switch(start=20.0, length=10.0, amplitude=5e-3, shape="bump")      # assumed: the geometry of the ERRI switch was not found
 AMPLITUDE = 3e-3            # m, at which equivalent conicity is quoted; so V0 is taken there
 RATIOS = (0.85, 0.90, 1.0)  # V/V0: those of the paper, and V0
-DEEPEST = 6e-4              # m of penetration that the contact table covers: the flange strikes a rail that does not give way
 AFTER = 6.0                 # s of motion behind the switch
 
 
@@ -142,7 +142,7 @@ def switch_study(vehicle, pair=None, *, ratios=RATIOS, reference=None, amplitude
     contact, found = linear_reference(vehicle, pair, amplitude, friction, load)
     V0 = float(found.speed) if reference is None else float(reference)
     more = {"law": law, "grid": grid, "dt": dt} | ({} if friction is None else {"friction": friction})
-    table = pair.table(deepest=DEEPEST)
+    table = pair.table(deepest=DEEPEST_IN_MOTION)
     runs = [cross(vehicle, table, switch, ratio * V0, reference=V0, after=after, progress=progress, **more) for ratio in ratios]
     turn = switch_threshold(vehicle, table, switch, reference=V0, after=after, progress=progress, **more) if threshold else None
     if turn is not None and not np.isnan(turn.ratio):
