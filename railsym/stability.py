@@ -103,7 +103,7 @@ class Stability:
 
 
 def stability(model: LinearModel, damping_ratios: Sequence[float] = (0.0,), speed_range=(5.0, 250.0),
-              frequency_band=FREQUENCY_BAND, all_modes: bool = False) -> tuple[Stability, ...]:
+              frequency_band=FREQUENCY_BAND, all_modes: bool = False, lowest_only: bool = False) -> tuple[Stability, ...]:
     """Stability of a model over a range of speeds.
 
     Parameters
@@ -119,6 +119,8 @@ def stability(model: LinearModel, damping_ratios: Sequence[float] = (0.0,), spee
         end (at least 25 Hz) are left out, so instabilities beyond are not seen; crossings are solved with all of them.
     all_modes : bool
         Also report modes that become unstable or stable while others are unstable.
+    lowest_only : bool
+        Report the critical speed alone: crossings beyond it are left out.
 
     Returns
     -------
@@ -137,7 +139,7 @@ def stability(model: LinearModel, damping_ratios: Sequence[float] = (0.0,), spee
     for _ in range(_REPEATS):
         lateral, others = _scan_parts(parts, ratios, speed_range, limit)
         searches = [_Search(z, [lateral] + (others if z == 0.0 else []), labels, frequency_band) for z in damping_ratios]
-        results = tuple(search.result(speed_range, all_modes) for search in searches)
+        results = tuple(search.result(speed_range, all_modes, lowest_only) for search in searches)
         if not any(scan.warnings for _, scan in [lateral, *others]):
             break
         limit *= 2.0
@@ -277,7 +279,7 @@ class _Search:
                 event.point = event.scan.polish(event.found, taken)
         self.events = _without_repeats([e for e in self.events if e not in events or e.point is not None])
 
-    def _transitions(self):
+    def _transitions(self, lowest_only):
         """Events at which the vehicle becomes unstable or stable, with the unstable modes counted from below."""
         unstable, result = set(self.unstable), []
         for event in sorted(self.events, key=lambda e: e.position):
@@ -288,14 +290,14 @@ class _Search:
                 unstable.discard(event.key)
             if (before == 0) != (len(unstable) == 0):
                 result.append(event)
-        return result
+        return result[:0 if self.unstable else 1] if lowest_only else result
 
-    def result(self, speed_range, all_modes) -> Stability:
+    def result(self, speed_range, all_modes, lowest_only) -> Stability:
         """Polish what decides and report it."""
         if all_modes:
             self._polish(list(self.events))
         while True:
-            chosen = self._transitions()
+            chosen = self._transitions(lowest_only)
             near = self._swapping_distance()
             open_ = [e for e in self.events if e.point is None and any(abs(e.position - c.position) < near for c in chosen)]
             if not open_:

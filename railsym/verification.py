@@ -23,11 +23,12 @@ def dense_eigenvalues(model: LinearModel, speed) -> np.ndarray:
     return np.linalg.eigvals(deflate(model, speed).matrix)
 
 
-def verify_stability(model: LinearModel, result: Stability, speed_range) -> Stability:
+def verify_stability(model: LinearModel, result: Stability, speed_range, lowest_only: bool = False) -> Stability:
     """Check a result, and say so in its message.
 
     Every crossing must be a dense eigenvalue of the whole model at its speed. For the real part the vehicle must also be stable
-    or unstable between the crossings as they say.
+    or unstable between the crossings as they say; with ``lowest_only`` up to the critical speed, beyond which the result says
+    nothing.
 
     Raises
     ------
@@ -42,16 +43,19 @@ def verify_stability(model: LinearModel, result: Stability, speed_range) -> Stab
                                    f"1/s (nearest: {error:.1e}); the crossing is not one of the whole model")
     checked = len(result.crossings)
     if all(c.criterion == 0.0 for c in result.crossings) and result.damping_ratio == 0.0:
-        checked += _verify_between(model, result, speed_range)
+        checked += _verify_between(model, result, speed_range, lowest_only)
     return replace(result, message=f"{result.message}; verified with dense eigenvalues at {checked} speeds")
 
 
-def _verify_between(model, result, speed_range):
+def _verify_between(model, result, speed_range, lowest_only):
     bounds = np.log([speed_range[0], *(c.speed for c in result.crossings), speed_range[1]])
+    if lowest_only and (result.crossings or result.unstable_at_start):
+        bounds = bounds[:2] if result.crossings else bounds[[0, 0]]
     unstable = result.unstable_at_start
     checked = 0
     for low, high, crossing in zip(bounds, bounds[1:], (*result.crossings, None)):
-        for speed in np.exp(low + (high - low) * (np.arange(_BETWEEN) + 0.5) / _BETWEEN):
+        steps = _BETWEEN if high > low else 1
+        for speed in np.exp(low + (high - low) * (np.arange(steps) + 0.5) / steps):
             value = dense_eigenvalues(model, speed)
             growing = value[excess(value, 0.0) > _UNSTABLE * np.abs(value)]
             if bool(len(growing)) != unstable:
