@@ -147,9 +147,11 @@ static int check_channel(const rs_integrator *it, const rs_channel *channel)
 		return number >= 0 && number < 2 * it->wheelsets * RS_WHEEL_OUTPUTS;
 	if (channel->kind == RS_CHANNEL_PATCH)
 		return number >= 0 && number < 2 * it->wheelsets * RS_ZONES * RS_PATCH_OUTPUTS;
-	const rs_kernel_info *info = channel->kind == RS_CHANNEL_ELEMENT ? rs_kernel_describe(number) : NULL;
-	return info && channel->instance >= 0 && channel->instance < it->system->model->groups[number].count
-	       && channel->row >= 0 && channel->row < info->coordinates;
+	int law = channel->kind == RS_CHANNEL_LAW;
+	const rs_kernel_info *info = law || channel->kind == RS_CHANNEL_ELEMENT ? rs_kernel_describe(number) : NULL;
+	const rs_group *group = it->system->model->groups + number;
+	return info && channel->instance >= 0 && channel->instance < group->count && channel->row >= 0
+	       && channel->row < (law ? RS_SEEN : info->coordinates) && (!law || group->laws[channel->instance]->seen);
 }
 
 int rs_integrator_channels(rs_integrator *it, int count, const rs_channel *channel)
@@ -207,16 +209,21 @@ static void at_end(const rs_integrator *it, double *u, double *a)
 	}
 }
 
+int rs_integrator_look(rs_integrator *it)
+{
+	at_end(it, it->sample_u, it->sample_a);
+	int status = rs_integrator_move(it, it->report.time);
+	rs_integrator_place(it, it->q, it->sample_u, it->sample_a);
+	return status ? status : rs_integrator_evaluate(it, NULL, 1, 0);
+}
+
 int rs_integrator_sample(rs_integrator *it, double *row)
 {
 	int status = RS_OK, captured = 0;
 	at_end(it, it->sample_u, it->sample_a);
 	if (it->looks) {
-		status = rs_integrator_move(it, it->report.time);
-		rs_integrator_place(it, it->q, it->sample_u, it->sample_a);
 		it->system->capturing = 1;
-		if (!status)
-			status = rs_integrator_evaluate(it, NULL, 1, 0);
+		status = rs_integrator_look(it);
 		if (!status && it->wheels)
 			rs_wheel_rail_outputs(it->wheels, it->wheel_output, it->patch_output);
 	}
@@ -229,6 +236,8 @@ int rs_integrator_sample(rs_integrator *it, double *row)
 			row[k] = it->wheel_output[channel->number];
 		else if (channel->kind == RS_CHANNEL_PATCH)
 			row[k] = it->patch_output[channel->number];
+		else if (channel->kind == RS_CHANNEL_LAW)
+			row[k] = it->system->model->groups[channel->number].laws[channel->instance]->seen[channel->row];
 		else
 			row[k] = it->system->capture[captured++].value;
 	}

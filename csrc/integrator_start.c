@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a state needs to begin a step: accelerations from M a = -r(q, u, 0), and for every Maxwell
- * element the rate w of its damper from c w + C(w) = k (e - s). */
+/* What a state needs to begin a step: accelerations from M a = -r(q, u, 0), for every Maxwell
+ * element the rate w of its damper from c w + C(w) = k (e - s), and for every actuator with a lag that of what it follows. */
 #include <math.h>
 #include <string.h>
 
@@ -50,7 +50,10 @@ static int start_internal(rs_integrator *it, int kernel)
 			continue;
 		const rs_law *law = group->laws[k];
 		double g = scatter->kept[(size_t)(k / lanes) * (size_t)(RS_KEPT * lanes) + RS_KEPT_G * lanes + k % lanes], slope;
-		status = damper_rate(law, damper_force(law, 0.0, &slope) - g, it->u + own);
+		if (law->kind == RS_LAW_MAXWELL)
+			status = damper_rate(law, damper_force(law, 0.0, &slope) - g, it->u + own);
+		else
+			it->u[own] = -g / (law->lag * (law->kind == RS_LAW_ACTUATOR_LENGTH ? law->stiffness : 1.0));
 		if (status)
 			it->report.coordinate = own;
 	}

@@ -20,6 +20,14 @@ enum {
 	RS_LAW_ACTUATOR_LENGTH = 5
 };
 
+enum {
+	RS_FAULT_NONE = 0,
+	RS_FAULT_STUCK = 1,   /* holds the demand that it follows: a jack whose valves have closed */
+	RS_FAULT_FREE = 2,    /* no force */
+	RS_FAULT_DAMPED = 3   /* its bypass damping alone */
+};
+enum { RS_SEEN_LENGTH = 0, RS_SEEN_RATE = 1, RS_SEEN_FORCE = 2, RS_SEEN = 3 };
+
 typedef struct {
 	int n;               /* points */
 	const double *x;     /* n, increasing */
@@ -35,6 +43,12 @@ typedef struct {
 	double command;      /* N or m */
 	const rs_curve *stiffness_curve;
 	const rs_curve *damping_curve;
+	double lag;            /* s, time constant with which an actuator follows its command; 0: at once */
+	double rate_limit;     /* m/s or N/s, of what it follows, with a lag; 0: none */
+	double force_limit;    /* N; 0: none */
+	double bypass_damping; /* N s/m, of RS_FAULT_DAMPED */
+	int fault;             /* RS_FAULT_... */
+	double *seen;          /* RS_SEEN: elongation (m), its rate (m/s) and force (N) of the last evaluation; or NULL */
 } rs_law;
 
 typedef struct {
@@ -271,16 +285,17 @@ enum {
 	RS_CHANNEL_ACCELERATION = 2,
 	RS_CHANNEL_ELEMENT = 3,
 	RS_CHANNEL_WHEEL = 4,
-	RS_CHANNEL_PATCH = 5
+	RS_CHANNEL_PATCH = 5,
+	RS_CHANNEL_LAW = 6
 };
 
 typedef struct rs_integrator rs_integrator;
 typedef struct rs_travel rs_travel;
 typedef struct {
 	int kind;        /* RS_CHANNEL_... */
-	int number;      /* coordinate; kernel of an element; output of a wheel or patch */
+	int number;      /* coordinate; kernel of an element or law; output of a wheel or patch */
 	int instance;    /* of the kernel */
-	int row;         /* of the instance's residual */
+	int row;         /* of the instance's residual; RS_SEEN_... of a law that keeps what it sees */
 } rs_channel;
 typedef struct {
 	int status;            /* of the last step */
@@ -306,6 +321,7 @@ double *rs_integrator_force(rs_integrator *integrator);
 int rs_integrator_kinks(rs_integrator *integrator, int count, const double *time);
 int rs_integrator_channels(rs_integrator *integrator, int count, const rs_channel *channel);
 void rs_integrator_controller(rs_integrator *integrator, rs_controller controller, void *context, int every);
+int rs_integrator_look(rs_integrator *integrator);
 int rs_integrator_sample(rs_integrator *integrator, double *row);
 int rs_integrator_run(rs_integrator *integrator, int steps, int every, double *samples, int *sampled);
 void rs_integrator_state(const rs_integrator *integrator, double *q, double *u, double *a);

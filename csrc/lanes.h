@@ -23,6 +23,7 @@ typedef double complex rs_lane;
 #define RS_KERNEL static
 #define RS_SQRT(to, from) ((to) = csqrt(from))
 #define RS_REAL(x) creal(x)
+#define RS_TANH(x) ctanh(x)
 #else
 typedef double rs_scalar;
 #if defined(__GNUC__)
@@ -38,6 +39,7 @@ typedef double rs_lane;
 	for (int lane_ = 0; lane_ < RS_LANES; lane_++) \
 		((double *)&(to))[lane_] = sqrt(((const double *)&(from))[lane_])
 #define RS_REAL(x) (x)
+#define RS_TANH(x) tanh(x)
 #endif
 
 /* The residual of one kernel and, unless pencil is NULL, its pencil. */

@@ -4,11 +4,14 @@
  *   spring and damper   f = f0 + k e + K(e) + c v + C(v)
  *   Maxwell             f = f0 + k (e - s),  0 = c w + C(w) - k (e - s),  k = k0 + K(|v|)
  *   bump stop           f = f0 + sign(e) [k d + K(d)],  d = |e| - gap > 0
- *   actuator, force     f = c v - command            (positive command pushes the ends apart)
- *   actuator, length    f = f0 + k (e - command) + c v
+ *   actuator, force     f = F sat((c v - d)/F)               (positive command pushes the ends apart)
+ *   actuator, length    f = F sat((f0 + k (e - d) + c v)/F)
+ *       d = command, or with a lag T the state s that follows it: 0 = z T (w - R sat((command - s)/(T R))), z = k or 1
+ *       stuck: 0 = z T w; free: f = 0; damped: f = F sat(c_bypass v/F)
  *
  * e elongation, v its rate, s elongation of the Maxwell damper, w = ds/dt; K and C are
- * monotone cubic tables, optional. A positive f pulls the two ends together.
+ * monotone cubic tables, optional. A positive f pulls the two ends together. sat(x) = x up to 0.8, then
+ * 0.8 + 0.2 tanh((x - 0.8)/0.2) and likewise below: smooth to its second derivative, never beyond 1.
  */
 #include "lanes.h"
 
@@ -79,6 +82,51 @@ static void RS_NAME(bump_stop)(const rs_law *law, rs_scalar e, RS_NAME(law_value
 	out->f_e = law->stiffness + slope;
 }
 
+/* F sat(x/F) and its slope; F = 0: no limit. */
+static rs_scalar RS_NAME(limited)(rs_scalar x, double limit, rs_scalar *slope)
+{
+	const double linear = 0.8, rest = 1.0 - linear;
+	double sign = RS_REAL(x) < 0.0 ? -1.0 : 1.0;
+	*slope = 1.0;
+	if (!(limit > 0.0) || sign * RS_REAL(x) <= linear * limit)
+		return x;
+	rs_scalar bend = RS_TANH((sign * x / limit - linear) / rest);
+	*slope = 1.0 - bend * bend;
+	return sign * limit * (linear + rest * bend);
+}
+
+/* The state with which an actuator follows its command. */
+static void RS_NAME(follow)(const rs_law *law, double size, rs_scalar s, rs_scalar w, RS_NAME(law_value) *out)
+{
+	double scale = size * law->lag;
+	rs_scalar slope = 0.0, wanted = 0.0;
+	if (law->fault == RS_FAULT_NONE)
+		wanted = RS_NAME(limited)((law->command - s) / law->lag, law->rate_limit, &slope);
+	out->g = scale * (w - wanted);
+	out->g_s = size * slope;
+	out->g_w = scale;
+}
+
+static void RS_NAME(actuator)(const rs_law *law, rs_scalar e, rs_scalar v, rs_scalar s, rs_scalar w,
+                              RS_NAME(law_value) *out)
+{
+	int length = law->kind == RS_LAW_ACTUATOR_LENGTH, lags = law->lag > 0.0;
+	int works = law->fault == RS_FAULT_NONE || law->fault == RS_FAULT_STUCK;
+	double k = length ? law->stiffness : 0.0, per_demand = length ? -k : -1.0, c = law->damping, preload = length ? law->preload : 0.0;
+	rs_scalar demand = lags ? s : (rs_scalar)law->command, slope, force;
+	if (lags)
+		RS_NAME(follow)(law, length ? k : 1.0, s, w, out);
+	if (!works) {
+		k = per_demand = preload = 0.0;
+		c = law->fault == RS_FAULT_DAMPED ? law->bypass_damping : 0.0;
+	}
+	force = preload + k * e + per_demand * demand + c * v;
+	out->f = RS_NAME(limited)(force, law->force_limit, &slope);
+	out->f_e = slope * k;
+	out->f_v = slope * c;
+	out->f_s = lags ? slope * per_demand : 0.0;
+}
+
 static void RS_NAME(one_law)(const rs_law *law, rs_scalar e, rs_scalar v, rs_scalar s, rs_scalar w,
                              RS_NAME(law_value) *out)
 {
@@ -93,13 +141,8 @@ static void RS_NAME(one_law)(const rs_law *law, rs_scalar e, rs_scalar v, rs_sca
 		RS_NAME(bump_stop)(law, e, out);
 		break;
 	case RS_LAW_ACTUATOR_FORCE:
-		out->f = law->damping * v - law->command;
-		out->f_v = law->damping;
-		break;
 	case RS_LAW_ACTUATOR_LENGTH:
-		out->f = law->preload + law->stiffness * (e - law->command) + law->damping * v;
-		out->f_e = law->stiffness;
-		out->f_v = law->damping;
+		RS_NAME(actuator)(law, e, v, s, w, out);
 		break;
 	default: /* padding of an unfilled lane */
 		break;
@@ -116,6 +159,11 @@ static void RS_NAME(law)(const rs_law *const *laws, const rs_lane *e, const rs_l
 #define TO(x) (((rs_scalar *)(x))[i])
 		RS_NAME(law_value) out = {0};
 		RS_NAME(one_law)(laws[i], AT(e), AT(v), AT(s), AT(w), &out);
+		if (laws[i]->seen) {
+			laws[i]->seen[RS_SEEN_LENGTH] = RS_REAL(AT(e));
+			laws[i]->seen[RS_SEEN_RATE] = RS_REAL(AT(v));
+			laws[i]->seen[RS_SEEN_FORCE] = RS_REAL(out.f);
+		}
 		TO(f) = out.f;
 		TO(g) = out.g;
 		TO(f_e) = out.f_e;

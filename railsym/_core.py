@@ -27,6 +27,12 @@ LAWS = {
 }
 
 
+FAULTS = "none", "stuck", "free", "damped"
+SEEN = {"length": lib.RS_SEEN_LENGTH, "rate": lib.RS_SEEN_RATE, "force": lib.RS_SEEN_FORCE}
+
+_LAW_NUMBERS = "preload", "stiffness", "damping", "clearance", "command", "lag", "rate_limit", "force_limit", "bypass_damping"
+
+
 def _check(status, what):
     if status != lib.RS_OK:
         raise CoreError(f"{what}: {_MEANING.get(status, f'unknown status {status}')}")
@@ -106,8 +112,10 @@ class Laws:
     ----------
     records : list of dict
         Keys ``kind`` (a key of LAWS), ``preload``, ``stiffness``, ``damping``,
-        ``clearance``, ``command`` (SI) and ``stiffness_curve``, ``damping_curve``
-        (a pair of breakpoints (n,) and coefficients (n - 1, 4), or None).
+        ``clearance``, ``command``, ``lag``, ``rate_limit``, ``force_limit`` (0: none),
+        ``bypass_damping`` (SI), ``stiffness_curve``, ``damping_curve``
+        (a pair of breakpoints (n,) and coefficients (n - 1, 4), or None), ``fault`` (one of FAULTS)
+        and ``keep`` (True: elongation, rate and force of the last evaluation are kept).
     """
 
     def __init__(self, records):
@@ -115,11 +123,19 @@ class Laws:
         self.array = ffi.new("rs_law[]", len(records))
         for law, record in zip(self.array, records, strict=True):
             law.kind = LAWS[record["kind"]]
-            for key in ("preload", "stiffness", "damping", "clearance", "command"):
+            for key in _LAW_NUMBERS:
                 setattr(law, key, record.get(key, 0.0))
+            law.fault = FAULTS.index(record.get("fault", "none"))
+            if record.get("keep"):
+                law.seen = self._seen()
             for key in ("stiffness_curve", "damping_curve"):
                 setattr(law, key, self._curve(record.get(key)))
         self.pointers = ffi.new("rs_law *[]", [ffi.addressof(self.array, k) for k in range(len(records))])
+
+    def _seen(self):
+        room = ffi.new("double[]", lib.RS_SEEN)
+        self._keep.append(room)
+        return room
 
     def _curve(self, table):
         if table is None:
@@ -139,6 +155,22 @@ class Laws:
         if not 0 <= number < len(self.array):
             raise ModelError(f"command of force law {number}: there are {len(self.array)}, counted from 0")
         self.array[number].command = value
+
+    def command(self, number):
+        """Command (N or m) of one actuator."""
+        return self.array[number].command
+
+    def set_fault(self, number, fault):
+        """Set the fault, one of FAULTS, of one actuator."""
+        self.array[number].fault = FAULTS.index(fault)
+
+    def fault(self, number):
+        """Fault of one actuator, one of FAULTS."""
+        return FAULTS[self.array[number].fault]
+
+    def seen(self, number):
+        """Elongation (m), rate (m/s) and force (N) of one actuator at the last evaluation, shape (3,)."""
+        return np.array(ffi.unpack(self.array[number].seen, lib.RS_SEEN))
 
 
 def kernel_real(name, inputs, seed, law=None):

@@ -7,7 +7,8 @@ from railsym._core import _MEANING, _check, _doubles, _vector, ffi, lib
 from railsym.errors import ModelError
 
 CHANNELS = {"position": lib.RS_CHANNEL_POSITION, "rate": lib.RS_CHANNEL_RATE, "acceleration": lib.RS_CHANNEL_ACCELERATION,
-            "element": lib.RS_CHANNEL_ELEMENT, "wheel": lib.RS_CHANNEL_WHEEL, "patch": lib.RS_CHANNEL_PATCH}
+            "element": lib.RS_CHANNEL_ELEMENT, "wheel": lib.RS_CHANNEL_WHEEL, "patch": lib.RS_CHANNEL_PATCH,
+            "law": lib.RS_CHANNEL_LAW}
 OK, NOT_CONVERGED, NOT_FINITE = lib.RS_OK, lib.RS_NOT_CONVERGED, lib.RS_NOT_FINITE
 SINGULAR, STOPPED, OUT_OF_TRACK = lib.RS_SINGULAR, lib.RS_STOPPED, lib.RS_OUT_OF_TRACK
 OUT_OF_TABLE, BAD_SPEED = lib.RS_OUT_OF_TABLE, lib.RS_BAD_SPEED
@@ -109,6 +110,10 @@ class Integrator:
         """Wheel-rail forces (`railsym.wheel_rail.WheelRail`) and the first coordinate of each wheelset; needs a travel."""
         self._wheels = forces
         _check(lib.rs_integrator_wheels(self._pointer, forces.pointer, len(first), _integers(first)), "wheels")
+
+    def look(self):
+        """Evaluate everything at the present state, so that laws have seen it; returns the status."""
+        return lib.rs_integrator_look(self._pointer)
 
     def sample(self):
         """Channels at the present state, shape (channels,), and the status."""

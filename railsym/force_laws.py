@@ -112,8 +112,12 @@ def _traction_rod(p, element):
 
 
 def _actuator(p, element):
-    return {"kind": f"actuator_{p['mode']}", "stiffness": p.get("stiffness", 0.0), "damping": p.get("damping", 0.0)}
+    limits = {key: p.get(key, np.inf) for key in ("rate_limit", "force_limit")}
+    return {"kind": f"actuator_{p['mode']}", "keep": True} | {key: p.get(key, 0.0) for key in _ACTUATOR_NUMBERS} | {
+        key: 0.0 if np.isinf(limit) else limit for key, limit in limits.items()}
 
+
+_ACTUATOR_NUMBERS = "stiffness", "damping", "lag", "bypass_damping"
 
 _MAKERS = {
     "spring": _spring,

@@ -14,6 +14,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from railsym.linear_model import MATRICES, LinearModel
+from railsym.topology import has_state
 
 # sign of a coordinate under y -> -y: vectors turn their y, axial vectors their x and z components
 _SIGN = {"x": 1.0, "y": -1.0, "z": 1.0, "yaw": -1.0, "roll": -1.0, "pitch": 1.0, "spin": 1.0}
@@ -185,8 +186,8 @@ def _body_images(bodies):
 
 
 def _element_images(elements, images):
-    """Name of each Maxwell element -> name of the one of its group between the mirrored places of the mirrored bodies."""
-    inner = [e for e in elements if e.type == "maxwell"]
+    """Name of each element with a state -> name of the one of its group between the mirrored places of the mirrored bodies."""
+    inner = [e for e in elements if has_state(e)]
     places = {(e.group, e.first.body, e.second.body, _key(e.first.position), _key(e.second.position)): e.name for e in inner}
     return {e.name: places.get((e.group, _attachment_image(e.first.body, images), _attachment_image(e.second.body, images),
                                 _key(e.first.position, -1.0), _key(e.second.position, -1.0))) for e in inner}

@@ -22,7 +22,7 @@ class Topology:
     start : dict of str to int
         First coordinate of each body.
     internal : dict of str to int
-        Coordinate of the internal state of each Maxwell element.
+        Coordinate of the internal state of each element that has one.
     attachment : dict of str to (ndarray of int, shape (6,), ndarray, shape (3,))
         Coordinates x y z yaw roll pitch (-1: does not exist) and design position (m).
     is_angle, first_order, cyclic : ndarray of bool, shape (n,)
@@ -44,8 +44,13 @@ def body_coordinates(body):
     return [f"{body.name}.{name}" for name in own] + boxes
 
 
+def has_state(element):
+    """Whether an element has an internal state: a Maxwell element, or an actuator that lags behind its command."""
+    return element.type == "maxwell" or (element.type == "actuator" and element.parameters.get("lag", 0.0) > 0.0)
+
+
 def topology(vehicle):
-    """Coordinates of ``vehicle`` in the order of its bodies, then its Maxwell elements."""
+    """Coordinates of ``vehicle`` in the order of its bodies, then the elements that have a state."""
     names, start, attachment = [], {}, {}
     for body in vehicle.bodies:
         first = start[body.name] = len(names)
@@ -57,14 +62,14 @@ def topology(vehicle):
         for k, box in enumerate(body.axleboxes):
             attachment[box.name] = (np.array([*index[:5], first + 6 + k]), body.position)
     attachment[TRACK] = (np.full(6, -1), None)
-    maxwell = [e.name for e in vehicle.elements if e.type == "maxwell"]
-    internal = {name: len(names) + k for k, name in enumerate(maxwell)}
-    names += [f"{name}.s" for name in maxwell]
+    inner = [e.name for e in vehicle.elements if has_state(e)]
+    internal = {name: len(names) + k for k, name in enumerate(inner)}
+    names += [f"{name}.s" for name in inner]
     last = [name.rsplit(".", 1)[1] for name in names]
     return Topology(
         tuple(names), start, internal, attachment,
         np.array([part in _ANGLES for part in last]),
-        np.array([False] * (len(names) - len(maxwell)) + [True] * len(maxwell)),
+        np.array([False] * (len(names) - len(inner)) + [True] * len(inner)),
         np.array([part == "spin" for part in last]),
     )
 

@@ -12,6 +12,7 @@ RULES = {
     "positive": (lambda v: (v > 0) & np.isfinite(v), "finite numbers above 0"),
     "not negative": (lambda v: (v >= 0) & np.isfinite(v), "finite numbers, 0 or above"),
     "radius": (lambda v: (v == v) & (v != 0), "any radius but 0, inf for straight, negative for hollow"),
+    "limit": (lambda v: v > 0, "numbers above 0, inf for no limit"),
     "positive radius": (lambda v: v > 0, "a radius above 0, inf for straight"),
     "poisson": (lambda v: (v >= 0) & (v < 0.5), "numbers from 0 to below 0.5"),
 }
@@ -74,6 +75,16 @@ class ElementType:
 
 def _optional(unit, shape=()):
     return Field(unit, shapes=(shape,), required=False, default=0.0)
+
+
+def _limits(rate_unit):
+    """What an actuator can do: how it follows its command, and how much it bears."""
+    return {
+        "lag": _optional("s"),
+        "rate_limit": Field(rate_unit, "limit", required=False, default=np.inf),
+        "force_limit": Field("N", "limit", required=False, default=np.inf),
+        "bypass_damping": _optional("N*s/m"),
+    }
 
 
 POSITION = Field("m", "finite", ((3,),))
@@ -147,11 +158,11 @@ ELEMENT_TYPES = {
     "traction_rod": ElementType({"stiffness": Field("N/m"), "damping": _optional("N*s/m")}, axis="line"),
     # In mode "length" a spring and damper carry the actuator to its commanded length; in mode "force" both may be left out.
     "actuator": ElementType(
-        {"stiffness": Field("N/m"), "damping": Field("N*s/m")}, axis="optional", modes=("force", "length")
+        {"stiffness": Field("N/m"), "damping": Field("N*s/m")} | _limits("m/s"), axis="optional", modes=("force", "length")
     ),
 }
 
-_FORCE_ACTUATOR_FIELDS = {"stiffness": _optional("N/m"), "damping": _optional("N*s/m")}
+_FORCE_ACTUATOR_FIELDS = {"stiffness": _optional("N/m"), "damping": _optional("N*s/m")} | _limits("N/s")
 
 
 def element_fields(type_name, mode=None):

@@ -89,6 +89,47 @@ def test_actuators():
     assert force(length, e=0.012, v=2.0) == pytest.approx(2e3 + 200.0, rel=1e-11)
 
 
+def saturated(x, limit):
+    """The smooth limit that laws.h states."""
+    rest = max(abs(x) / limit - 0.8, 0.0)
+    return np.sign(x) * limit * (min(abs(x) / limit, 0.8) + 0.2 * np.tanh(rest / 0.2))
+
+
+@pytest.mark.parametrize("stretch", [-0.2, -0.0205, -0.017, -0.005, 0.0, 0.003, 0.016, 0.0195, 0.5])
+def test_force_of_an_actuator_stays_within_its_limit(stretch):
+    record = law_record(element("actuator", mode="length", stiffness=1e6, damping=100.0, force_limit=2e4)) | {"command": 0.01}
+    found = force(record, e=0.01 + stretch)
+    assert abs(found) <= 2e4
+    assert found == pytest.approx(saturated(1e6 * stretch, 2e4), rel=1e-10, abs=1e-9)  # 0.01 + x - 0.01 loses a digit or two
+    if abs(stretch) <= 0.016:
+        assert found == pytest.approx(1e6 * stretch, rel=1e-10, abs=1e-9)
+
+
+@pytest.mark.parametrize(("mode", "size"), [("length", 1e6), ("force", 1.0)])
+def test_an_actuator_follows_its_command_with_its_lag_and_no_faster_than_its_rate(mode, size):
+    """g = z T (w - R sat((command - s)/(T R))): at the root w is the lag's rate, or the limit."""
+    record = law_record(element("actuator", mode=mode, stiffness=1e6, damping=100.0, lag=0.05, rate_limit=0.2)) | {"command": 0.03}
+    for s in (0.03, 0.025, 0.022, 0.0, -4.0, 0.038, 0.3):
+        rate = saturated((0.03 - s) / 0.05, 0.2)
+        assert abs(rate) <= 0.2
+        assert law(record, s=s, w=rate)[1] == pytest.approx(0.0, abs=1e-11 * size)
+        assert law(record, s=s, w=rate + 1.0)[1] == pytest.approx(0.05 * size, rel=1e-10)
+    expected = 1e6 * (0.01 - 0.022) + 200.0 if mode == "length" else 200.0 - 0.022
+    assert force(record, e=0.01, v=2.0, s=0.022) == pytest.approx(expected, rel=1e-11)
+
+
+def test_actuators_that_have_failed():
+    numbers = {"stiffness": 1e6, "damping": 100.0, "lag": 0.05, "rate_limit": 0.2, "force_limit": 2e4, "bypass_damping": 3e3}
+    record = law_record(element("actuator", mode="length", **numbers)) | {"command": 0.5, "preload": 70.0}
+    stuck = record | {"fault": "stuck"}
+    assert law(stuck, e=0.01, v=0.1, s=0.004)[0] == pytest.approx(6e3 + 80.0, rel=1e-11)
+    assert law(stuck, s=0.004, w=0.0)[1] == 0.0  # it stays, whatever the command
+    assert force(record | {"fault": "free"}, e=0.01, v=2.0, s=0.2) == 0.0
+    assert force(record | {"fault": "damped"}, e=0.01, v=2.0, s=0.2) == pytest.approx(6e3, rel=ROUNDOFF)
+    assert force(record | {"fault": "damped"}, e=0.01, v=50.0, s=0.2) == pytest.approx(2e4, rel=1e-6)
+    assert force(record | {"fault": "damped"}, e=0.01, v=50.0, s=0.2) <= 2e4
+
+
 @pytest.mark.parametrize(("kind", "key", "slot"), [("spring", "curve", "e"), ("damper", "curve", "v"),
                                                    ("damper", "damping_curve", "v")])
 @pytest.mark.parametrize(("points", "reference"), [(HARD, mirrored(HARD)), (BOTH, PchipInterpolator(*BOTH))])

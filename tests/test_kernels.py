@@ -30,6 +30,12 @@ LAWS = {
     "bump_stop_curve": {"kind": "bump_stop", "clearance": 0.1, "stiffness": 0.3, "stiffness_curve": HALF_CURVE},
     "actuator_force": {"kind": "actuator_force", "damping": 0.5, "command": 1.3},
     "actuator_length": {"kind": "actuator_length", "preload": 0.6, "stiffness": 1.1, "damping": 0.5, "command": 0.2},
+    "actuator_limits": {"kind": "actuator_length", "preload": 0.2, "stiffness": 1.1, "damping": 0.5, "command": 0.6, "lag": 0.4,
+                        "rate_limit": 1.2, "force_limit": 0.9},
+    "actuator_thrust": {"kind": "actuator_force", "damping": 0.5, "command": -0.7, "lag": 0.8, "rate_limit": 1.4, "force_limit": 1.5},
+    "actuator_stuck": {"kind": "actuator_length", "stiffness": 1.1, "damping": 0.5, "lag": 0.4, "rate_limit": 1.2, "fault": "stuck"},
+    "actuator_damped": {"kind": "actuator_length", "preload": 0.2, "stiffness": 1.1, "damping": 0.5, "lag": 0.4, "force_limit": 0.9,
+                        "bypass_damping": 0.8, "fault": "damped"},
 }
 # Elongations below, inside and above the tables and the clearance.
 ELONGATIONS = (-0.8, -0.15, 0.05, 0.35, 0.9)

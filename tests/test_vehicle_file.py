@@ -181,6 +181,9 @@ def test_the_good_file_loads(tmp_path):
     assert vehicle.attachments == ("frame", "wheelset1", "wheelset1.axlebox_left", "wheelset1.axlebox_right", "track")
 
 
+LIMITS = {"lag", "rate_limit", "force_limit", "bypass_damping"}
+
+
 @pytest.mark.parametrize("case", BAD, ids=lambda case: case.replace(" ", "_"))
 def test_bad_input_is_one_clear_error(tmp_path, case):
     old, new, key, value, words = BAD[case]
@@ -226,8 +229,8 @@ def test_a_missing_file_is_named(tmp_path):
         ('type = "damper"\ncurve = "force_speed"\naxis = "z"', {"curve"}),
         ('type = "bump_stop"\ncurve = "force_deflection"\naxis = "z"', {"curve"}),
         ('type = "anti_roll_bar"\nstiffness = [1, "MN*m/rad"]', {"stiffness", "damping"}),
-        ('type = "actuator"\nmode = "force"\naxis = "y"', {"mode", "stiffness", "damping"}),
-        ('type = "actuator"\nmode = "length"\nstiffness = [1, "MN/m"]\ndamping = [1, "kN*s/m"]\naxis = "y"', {"mode", "stiffness", "damping"}),
+        ('type = "actuator"\nmode = "force"\naxis = "y"', {"mode", "stiffness", "damping"} | LIMITS),
+        ('type = "actuator"\nmode = "length"\nstiffness = [1, "MN/m"]\ndamping = [1, "kN*s/m"]\naxis = "y"', {"mode", "stiffness", "damping"} | LIMITS),
     ],
 )
 def test_every_type_reads_its_parameters(tmp_path, table, parameters):

@@ -121,3 +121,11 @@ def test_trusses_and_spring_guide_an_axlebox_as_derived(pendolino):
     np.testing.assert_allclose(np.diag(guidance), coil + [along, lateral, 0.0], rtol=0.03)
     assert guidance[1, 1] == pytest.approx(coil[1] + lateral, rel=1e-3)
     np.testing.assert_allclose(guidance - np.diag(np.diag(guidance)), 0.0, atol=0.01 * 1.1e6)
+
+
+def test_the_tilting_vehicle_is_the_paper_s_too():
+    """Car body and bolsters together are Table I's car body: mass, centre of mass, inertia; so the whole is as before."""
+    plain, tilting = assembled(load_vehicle("pendolino")), assembled(load_vehicle("pendolino_tilting"))
+    assert tilting[0] == plain[0] == 51768
+    np.testing.assert_allclose(tilting[1], plain[1], atol=1e-9)
+    np.testing.assert_allclose(tilting[2], plain[2], rtol=1e-9, atol=1e-6)

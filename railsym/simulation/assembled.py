@@ -55,6 +55,8 @@ class Assembled:
         self.preload = static_preload(self.model)
         self.names = self.model.topology.coordinates
         self.second = int(np.sum(~self.model.topology.first_order))
+        thrusts = {e.name for e in vehicle.elements if e.type == "actuator" and e.parameters["mode"] == "force"}
+        self.units = {self.model.topology.internal[name]: "N" if name in thrusts else "m" for name in self.model.topology.internal}
         self.wheels = self._add_contact(contact, forces)
         self.model.set_speed(float(speed.at(0.0)))
         self._number_frames()

@@ -76,7 +76,7 @@ class Recorder:
     def __init__(self, recipes):
         self.recipes = recipes
         wanted = {raw for recipe in recipes for raw in recipe.raw}
-        order = {kind: k for k, kind in enumerate(("position", "rate", "acceleration", "element", "wheel", "patch"))}
+        order = {kind: k for k, kind in enumerate(("position", "rate", "acceleration", "element", "wheel", "patch", "law"))}
         self.raw = sorted(wanted, key=lambda raw: (order[raw[0]], *raw[1:]))
         self._column = {raw: k for k, raw in enumerate(self.raw)}
 
@@ -110,7 +110,7 @@ def _travel(run):
 def _coordinates(run):
     for k, name in enumerate(run.names):
         last = name.rsplit(".", 1)[1]
-        unit = "m" if last in ("x", "y", "z", "s") else "rad"
+        unit = run.units[k] if last == "s" else "m" if last in ("x", "y", "z") else "rad"
         yield Recipe(Channel(name, unit, "from the design position, in the track frame"), (("position", k, 0, 0),), _same)
         yield Recipe(Channel(name + ".rate", unit + "/s", "rate of the coordinate"), (("rate", k, 0, 0),), _same)
         if k < run.second:
@@ -177,6 +177,20 @@ def _elements(run):
         kernel, instance = ("line", k) if k < lines else ("axis", k - lines)
         raw = tuple(("element", kernels[kernel].number, instance, row) for row in range(3))
         yield Recipe(Channel(f"{element.name}.force", "N", "positive pulls the ends together"), raw, _along(direction))
+        if element.type == "actuator":
+            yield from _actuator(element.name, kernels[kernel].number, instance)
+
+
+def _actuator(name, kernel, instance):
+    """How far an actuator is out, how fast it goes and what it gives."""
+    length, rate, force = (("law", kernel, instance, _core.SEEN[key]) for key in ("length", "rate", "force"))
+    yield Recipe(Channel(f"{name}.length", "m", "longer than at the design position"), (length,), _same)
+    yield Recipe(Channel(f"{name}.rate", "m/s", "rate of its length"), (rate,), _same)
+    yield Recipe(Channel(f"{name}.power", "W", "given to the vehicle"), (rate, force), _power)
+
+
+def _power(time, rate, force):
+    return -rate * force
 
 
 def _along(direction):

@@ -15,6 +15,7 @@ from railsym.results import ChannelWriter, Run
 from railsym.results.metadata import Ending, RunInfo
 from railsym.simulation.assembled import Assembled
 from railsym.simulation.channels import Recorder, catalogue, chosen
+from railsym.simulation.controls import Controls
 from railsym.simulation.failure import ending_of
 from railsym.simulation.speed import SpeedProfile
 
@@ -22,65 +23,6 @@ RHO = 0.9          # of the generalised-alpha scheme: what is left in a step of 
 TOLERANCE = 1e-2   # m/s^2: on irregular track an eighth or less of what a step of 1 ms leaves wrong (docs/simulation.md)
 _BLOCK = 0.5       # s of motion between two looks at the keyboard and the progress bar
 _ENOUGH = 500      # samples that wait before channels are made of them (and written)
-
-
-class Controls:
-    """What a controller sees and may set.
-
-    Attributes
-    ----------
-    time : float
-        s
-    """
-
-    def __init__(self, simulation):
-        self._run, self._parts = simulation, simulation.parts
-        self._state = None
-        self._laws = {element.name: k for k, element in enumerate(self._parts.model.laws)}
-        self._lines = sum(element.axis is None for element in self._parts.model.laws)
-
-    @property
-    def time(self):
-        """s"""
-        return self._run.time
-
-    def _value(self, row, name):
-        if self._state is None or self._state[0] != self.time:
-            self._state = self.time, self._parts.integrator.state()
-        return float(self._state[1][row][self._parts.number(name, "controller")])
-
-    def position(self, name):
-        """A coordinate, such as ``"car.roll"``, m or rad."""
-        return self._value(0, name)
-
-    def rate(self, name):
-        """Its rate."""
-        return self._value(1, name)
-
-    def acceleration(self, name):
-        """Its second derivative in the track frame."""
-        return self._value(2, name)
-
-    def command(self, element, value):
-        """Set the command of an actuator, N or m, until it is set again.
-
-        Raises
-        ------
-        SimulationError
-            An element that does not exist or takes no command.
-        """
-        actuators = [e.name for e in self._parts.model.laws if e.type == "actuator"]
-        if element not in actuators:
-            raise SimulationError(f"command of {element!r}: actuators of this vehicle are {', '.join(actuators) or 'none'}")
-        if not np.isfinite(value):
-            raise SimulationError(f"command of {element!r} is {value}; a finite number (N or m) is needed")
-        k = self._laws[element]
-        table, number = ("line", k) if k < self._lines else ("axis", k - self._lines)
-        self._parts.model._law_tables[table].set_command(number, float(value))
-
-    def force(self, coordinate, value):
-        """Set the generalised force (N or N m) applied to a coordinate, until it is set again."""
-        self._parts.integrator.force[self._parts.number(coordinate, "controller")] = float(value)
 
 
 class Simulation:
@@ -134,7 +76,7 @@ class Simulation:
         self.parts = Assembled(vehicle, contact, track, profile, dt, rho, tolerance, drive, forces)
         self.available = catalogue(self.parts, markers or {})
         self.recorder = Recorder(chosen(self.available, channels))
-        self.every = _steps_between(dt, rate)
+        self.every, self.faults = _steps_between(dt, rate), []
         self.dt, self.ending = float(dt), Ending("running")
         integrator = self.parts.integrator
         integrator.set_channels(self.recorder.raw)
@@ -239,7 +181,7 @@ class Simulation:
         law = getattr(parts.wheels, "_law", "linear")
         return RunInfo(vehicle=parts.vehicle.name, configuration=parts.vehicle.configuration or "", track=getattr(parts.track, "name", "straight"),
                        speed=float(parts.speed.at(0.0)), time_step=self.dt, creep_law=law, ending=self.ending,
-                       message=str(self.ending), extra={"counts": counts})
+                       message=str(self.ending), extra={"counts": counts} | ({"faults": self.faults} if self.faults else {}))
 
     def result(self):
         """The `Run` so far."""

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a controller in Python sees of a vehicle in motion, and what it may set."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from railsym import _core
+from railsym.errors import SimulationError
+from railsym.simulation.markers import accelerometer, frame_motion, gyroscope
+from railsym.vehicle_checks import unknown
+
+
+class Controls:
+    """What a controller sees and may set.
+
+    Attributes
+    ----------
+    time : float
+        s
+    """
+
+    def __init__(self, simulation):
+        self._run, self._parts = simulation, simulation.parts
+        self._state = self._looked = None
+        self._bodies = {body.name: body for body in self._parts.vehicle.bodies}
+        self._laws = {element.name: k for k, element in enumerate(self._parts.model.laws)}
+        self._lines = sum(element.axis is None for element in self._parts.model.laws)
+
+    @property
+    def time(self):
+        """s"""
+        return self._run.time
+
+    def _value(self, row, name):
+        return float(self._all()[row][self._parts.number(name, "controller")])
+
+    def _all(self):
+        """q, u, a at the present time."""
+        if self._state is None or self._state[0] != self.time:
+            self._state = self.time, self._parts.integrator.state()
+        return self._state[1]
+
+    def position(self, name):
+        """A coordinate, such as ``"car.roll"``, m or rad."""
+        return self._value(0, name)
+
+    def rate(self, name):
+        """Its rate."""
+        return self._value(1, name)
+
+    def acceleration(self, name):
+        """Its second derivative in the track frame."""
+        return self._value(2, name)
+
+    def command(self, element, value):
+        """Set the command of an actuator, N or m, until it is set again.
+
+        Raises
+        ------
+        SimulationError
+            An element that does not exist or takes no command.
+        """
+        table, number = self._actuator(element, "command")
+        if not np.isfinite(value):
+            raise SimulationError(f"command of {element!r} is {value}; a finite number (N or m) is needed")
+        table.set_command(number, float(value))
+
+    def fault(self, element, kind):
+        """Let an actuator fail from now on; what and when stands in the run's ``info.extra["faults"]``.
+
+        Parameters
+        ----------
+        element : str
+        kind : str
+            ``"stuck"``: it keeps the length (mode "length") or thrust that it followed last, and yields above its force limit;
+            ``"free"``: it gives no force; ``"damped"``: its bypass damping alone; ``"none"``: it works again.
+
+        Raises
+        ------
+        SimulationError
+            Another kind, an element that is no actuator, or one without a lag that is to be stuck at what it follows.
+        """
+        table, number = self._actuator(element, "fault")
+        if kind not in _core.FAULTS:
+            raise SimulationError(f"fault of {element!r}: {kind!r} is {unknown(kind, _core.FAULTS, 'faults')}")
+        table.set_fault(number, kind)
+        self._run.faults.append({"time": self.time, "element": element, "fault": kind})
+
+    def length(self, element):
+        """By how much an actuator is longer than at the design position, m."""
+        return self._seen(element, "length")
+
+    def length_rate(self, element):
+        """Rate of an actuator's length, m/s."""
+        return self._seen(element, "rate")
+
+    def actuator_force(self, element):
+        """Force of an actuator, N; positive pulls its ends together."""
+        return self._seen(element, "force")
+
+    def _seen(self, element, what):
+        table, number = self._actuator(element, what)
+        if self._looked != self.time:
+            self._parts.integrator.look()
+            self._looked = self.time
+        return float(table.seen(number)[_core.SEEN[what]])
+
+    def _actuator(self, element, what):
+        """Table of laws and number in it of an actuator."""
+        actuators = [e.name for e in self._parts.model.laws if e.type == "actuator"]
+        if element not in actuators:
+            raise SimulationError(f"{what} of {element!r}: actuators of this vehicle are {', '.join(actuators) or 'none'}")
+        k = self._laws[element]
+        table, number = ("line", k) if k < self._lines else ("axis", k - self._lines)
+        return self._parts.model._law_tables[table], number
+
+    def imu(self, body, position=None):
+        """What an inertial measurement unit on a body feels.
+
+        Parameters
+        ----------
+        body : str
+        position : array_like, shape (3,), optional
+            m, vehicle coordinates at the design position; the body's centre of mass without it.
+
+        Returns
+        -------
+        force : ndarray, shape (3,)
+            m/s^2, specific force, axes of the body: acceleration less gravity, so that at rest it is (0, 0, -g).
+        turning : ndarray, shape (3,)
+            rad/s, angular velocity against the inertial frame, axes of the body.
+
+        Raises
+        ------
+        SimulationError
+            A body that does not exist.
+        """
+        if body not in self._bodies:
+            raise SimulationError(f"imu on {body!r}: {unknown(body, self._bodies, 'bodies')}")
+        at = self._bodies[body]
+        arm = np.zeros(3) if position is None else np.asarray(position, dtype=float) - at.position
+        first = self._parts.model.topology.start[body]
+        state = np.array(self._all())[:, first:first + 6, None]
+        if at.kind != "rigid_body":
+            state[:, 5] = 0.0
+        parts, run = self._parts, np.array([self.time])
+        frame = frame_motion(parts.track, parts.speed, run, at.position[0], parts.vehicle.gravity)
+        offset = np.array([0.0, *at.position[1:]])
+        force = accelerometer(*state, arm, offset, frame, parts.vehicle.gravity)[0] - [0.0, 0.0, parts.vehicle.gravity]
+        return force, gyroscope(*state[:2], frame)[0]
+
+    def force(self, coordinate, value):
+        """Set the generalised force (N or N m) applied to a coordinate, until it is set again."""
+        self._parts.integrator.force[self._parts.number(coordinate, "controller")] = float(value)
