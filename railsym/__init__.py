@@ -24,6 +24,7 @@ _MODULE_OF = {
     "Run": "results",
     "Simulation": "simulation",
     "Track": "track",
+    "Study": "sweep",
     "SwitchStudy": "studies",
     "Vehicle": "vehicle",
     "WheelRail": "wheel_rail",
@@ -51,7 +52,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("criteria", "dampers", "nonlinear", "plots", "results", "simulation", "studies", "track")
+_SUBMODULES = ("criteria", "dampers", "nonlinear", "plots", "results", "simulation", "studies", "sweep", "track")
 
 _get, __dir__, _names = lazy(__name__, _MODULE_OF, _SUBMODULES)
 __all__ = [*_names, "__version__"]
