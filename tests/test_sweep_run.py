@@ -17,10 +17,10 @@ def study(cases=12, **changes):
 def test_outputs_are_those_of_critical_speed(tmp_path):
     results = study().run(tmp_path / "r.nc")
     for k in range(0, 12, 5):
-        vehicle, settings = results.study.case(k)
-        found = rs.critical_speed(vehicle, settings["contact.conicity"])
+        case = results.study.case(k)
+        found = rs.critical_speed(case.vehicle, case.settings["contact.conicity"])
         assert results["speed"][k] == found.speed or (np.isnan(results["speed"][k]) and found.speed is np.ma.masked)
-        assert vehicle.parameters["wheelset.mass"].value == results["wheelset.mass"][k]
+        assert case.vehicle.parameters["wheelset.mass"].value == results["wheelset.mass"][k]
     assert (results.status == "done").all() and not results.errors and results.unit("speed") == "m/s"
 
 

@@ -13,6 +13,7 @@ from railsym.lazy import lazy
 
 _MODULE_OF = {
     "Analysis": "analysis",
+    "Case": "worker",
     "CriticalSpeed": "critical_speed",
     "FullGrid": "plans",
     "Grid": "factors",

@@ -52,10 +52,10 @@ class Analysis:
         raise NotImplementedError
 
     def solver(self, vehicle):
-        """Function ``solve(vehicle, settings)`` that gives a case's results by name (float, or str for texts).
+        """Function ``solve(case)`` that gives a case's results by name (float, or str for texts); see `Case`.
 
-        Called once in a worker, with the vehicle that the cases depart from. ``settings`` holds the inputs that the case sets, SI.
-        What it raises is recorded as the case's error. The results must not depend on the cases solved before.
+        Called once a worker and configuration, with the vehicle that the cases depart from. What ``solve`` raises is recorded as the
+        case's error. Results must not depend on the cases solved before.
         """
         raise NotImplementedError
 

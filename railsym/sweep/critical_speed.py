@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
+from railsym.critical_cases import CriticalSpeedSolver
 from railsym.critical_speed import SPEED_RANGE, damping_ratio_of
-from railsym.linear import linear_model
-from railsym.stability import FREQUENCY_BAND, stability
+from railsym.stability import FREQUENCY_BAND
 from railsym.sweep.analysis import Analysis, Output, option
 from railsym.sweep.linear_contact import contact_inputs, contact_of
 
@@ -24,9 +25,9 @@ class CriticalSpeed(Analysis):
     ----------
     conicity : float, optional
         Equivalent conicity; 0.2 or a factor or setting ``contact.conicity`` without it.
-    criterion : {"real_part", "damping_ratio"}
+    criterion : {"real_part", "damping_ratio"}, optional
     damping_ratio : float, optional
-        Of the second criterion; 0.05 without it.
+        Of the second criterion, which it selects; 0.05 without it.
     speed_range : (float, float)
         m/s.
     frequency_band : (float, float)
@@ -39,7 +40,7 @@ class CriticalSpeed(Analysis):
     """
 
     conicity: float | None = option(None)
-    criterion: str = option("real_part")
+    criterion: str | None = option(None)
     damping_ratio: float | None = option(None)
     speed_range: tuple = option(SPEED_RANGE, unit="m/s")
     frequency_band: tuple = option(FREQUENCY_BAND, unit="Hz")
@@ -59,10 +60,17 @@ class CriticalSpeed(Analysis):
                 "label": Output("", "motion that becomes unstable", True)}
 
     def solver(self, vehicle):
-        options = (damping_ratio_of(self.criterion, self.damping_ratio),), self.speed_range, self.frequency_band
+        options = {"damping_ratio": damping_ratio_of(self.criterion, self.damping_ratio), "speed_range": self.speed_range,
+                   "frequency_band": self.frequency_band}
 
-        def solve(vehicle, settings):
-            found, = stability(linear_model(vehicle, contact_of(self.conicity, settings)), *options)
+        @lru_cache(maxsize=1)
+        def solver_of(contact):
+            return CriticalSpeedSolver(vehicle, contact=contact, **options)
+
+        def solve(case):
+            contact = contact_of(self.conicity, case.settings)
+            # one solver serves all conicities; what else of the contact changes needs another
+            found = solver_of(replace(contact, conicity=0.2)).solve(case.changes, contact.conicity)
             if found.speed is None:
                 return {"speed": np.nan, "frequency_hz": np.nan, "verdict": UNSTABLE if found.unstable_at_start else STABLE, "label": ""}
             return {"speed": found.speed, "frequency_hz": found.frequency_hz, "verdict": FOUND, "label": found.label}

@@ -143,12 +143,7 @@ class Study:
         return np.concatenate(parts) if parts else np.empty((0, len(self.names)))
 
     def case(self, number):
-        """Vehicle and settings of a case: what the analysis gets.
-
-        Returns
-        -------
-        Vehicle, dict of str to float
-        """
+        """The `Case` of a number: ``.vehicle``, ``.changes``, ``.settings``."""
         from railsym.sweep.worker import Cases
 
         if not 0 <= number < self.size:

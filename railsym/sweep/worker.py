@@ -52,6 +52,30 @@ class Chunk:
     seconds: float = 0.0
 
 
+@dataclass(frozen=True)
+class Case:
+    """What an analysis gets.
+
+    Attributes
+    ----------
+    base : Vehicle
+        Configured, with what the study sets.
+    changes : dict of str to float or str
+        Parameters of this case, as `Vehicle.replace` takes them.
+    settings : dict of str to float
+        Inputs of the analysis that study or case set, SI.
+    """
+
+    base: Any
+    changes: dict
+    settings: dict
+
+    @property
+    def vehicle(self):
+        """The vehicle of this case."""
+        return self.base.replace(self.changes) if self.changes else self.base
+
+
 @dataclass
 class Cases:
     """How a row of factors becomes a vehicle and settings."""
@@ -80,7 +104,7 @@ class Cases:
         return self._bases[configuration]
 
     def case(self, row):
-        """Vehicle and settings of a row of factors."""
+        """The `Case` of a row of factors."""
         configuration, changes, settings = self.configuration, {}, dict(self.settings)
         for name, labels, value in zip(self.names, self.labels, row.tolist()):
             value = labels[int(value)] if labels else value
@@ -90,8 +114,7 @@ class Cases:
                 settings[name] = value
             else:
                 changes[name] = value
-        base = self.base(configuration)
-        return (base.replace(changes) if changes else base), settings
+        return Case(self.base(configuration), changes, settings)
 
 
 @dataclass
@@ -102,7 +125,7 @@ class Payload:
     analysis: Any
     numbers: tuple
     texts: tuple
-    _solve: Any = None
+    _solvers: dict = field(default_factory=dict)       # by the vehicle that cases depart from
 
     @classmethod
     def of(cls, study):
@@ -112,9 +135,10 @@ class Payload:
 
     def solve(self, row):
         """Results of a case: numbers (list) and texts (list)."""
-        if self._solve is None:
-            self._solve = self.analysis.solver(self.cases.base(self.cases.configuration))
-        found = self._solve(*self.cases.case(row))
+        case = self.cases.case(row)
+        if case.base not in self._solvers:
+            self._solvers[case.base] = self.analysis.solver(case.base)
+        found = self._solvers[case.base](case)
         return [float(found[name]) for name in self.numbers], [str(found[name]) for name in self.texts]
 
     def chunk(self, cases, rows):
