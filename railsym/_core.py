@@ -145,6 +145,12 @@ class Laws:
         self._keep += [curve, x, c]
         return curve
 
+    def set_numbers(self, numbers, record):
+        """Give some laws, by their numbers, the stiffness, damping and clearance (SI) of a record of the same kind and curves."""
+        for number in numbers:
+            for key in ("stiffness", "damping", "clearance"):
+                setattr(self.array[number], key, record.get(key, 0.0))
+
     def set_preload(self, values):
         """Set the preload (N) of every law; shape (n,)."""
         for law, value in zip(self.array, _vector(values, len(self.array), "preloads"), strict=True):

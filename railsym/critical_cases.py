@@ -12,13 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from railsym.critical_speed import CRITERIA, SPEED_RANGE, UNITS, contact_or_default, damping_ratio_of, masked
 from railsym.errors import ModelError, RailsymError
-from railsym.linear import RollingVehicle
+from railsym.prepared_vehicle import PreparedVehicle
 from railsym.progress import followed
 from railsym.stability import FREQUENCY_BAND, Stability, stability
 from railsym.verification import verify_stability
@@ -68,10 +69,17 @@ class CriticalSpeedSolver:
         if conicity is not None:
             self.contact = replace(self.contact, conicity=float(conicity))
 
+    @cached_property
+    def _prepared(self):
+        return PreparedVehicle(self.vehicle)
+
+    def __getstate__(self):
+        return {name: value for name, value in vars(self).items() if name != "_prepared"}     # C memory stays in its process
+
     def model(self, changes: Mapping[str, Any], conicity: float | None = None):
         """The LinearModel of a case; arguments and errors as `solve`."""
         contact = self.contact if conicity is None else replace(self.contact, conicity=float(conicity))
-        return RollingVehicle(self.vehicle.replace(changes)).linear_model(contact)
+        return self._prepared.linear_model(changes, contact)
 
     def solve(self, changes: Mapping[str, Any], conicity: float | None = None, verify: bool = False) -> Stability:
         """The lowest speed at which a case becomes unstable.

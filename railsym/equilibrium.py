@@ -17,6 +17,7 @@ from railsym.model import bushing_diagonals, law_directions
 # A rigid motion counts as free when its stiffness is this small against the largest one:
 # far above roundoff of the assembled matrix (1e-15), far below any real spring.
 _FREE = 1e-10
+_RIGID = np.array([0, 1, 3])  # x, y and yaw among a body's coordinates
 
 
 @dataclass(frozen=True)
@@ -55,38 +56,94 @@ def static_preload(model):
     ModelError
         A body that nothing holds, or a wheel that carries no load.
     """
-    load = -model.residual()
-    forms, stiffness = _deformations(model)
-    moved = _displacement(model, _stiffness(model, forms, stiffness), load)
-    forces = stiffness * (forms @ moved)
-    split = 6 * len(model.bushings)
-    bushing_forces, law_forces = forces[:split].reshape(-1, 6), forces[split:]
-    model.set_preload(bushing_forces, law_forces)
-    return Preload(bushing_forces, law_forces, _wheel_loads(model))
+    return Statics(model).preload(component_stiffness(model), -model.residual())
 
 
-def _stiffness(model, forms, stiffness):
-    """Elastic stiffness sum k e e^T at the design position."""
-    used = stiffness != 0.0
-    part = forms[used]
-    return part.T @ (stiffness[used, None] * part)
+def component_stiffness(model):
+    """Stiffness of every elastic component: six a bushing, then one a line or axis element; SI."""
+    return np.concatenate([bushing_diagonals(model.bushings)[0].ravel(), [slope_at_rest(e) for e in model.laws]])
+
+
+class Statics:
+    """What the places of a model's bodies and elements alone decide of its preload.
+
+    Parameters
+    ----------
+    model : railsym.model.Model
+        Without wheel-rail contact, on straight level track.
+    """
+
+    def __init__(self, model):
+        self.model = model
+        self._index, self._form = _deformations(model)
+        n = model.size + 1      # the last row and column take what does not exist
+        self._products = self._form[:, :, None] * self._form[:, None, :]
+        self._entries = (n * self._index[:, :, None] + self._index[:, None, :]).ravel()
+        self._motions = _rigid_motions(model)
+        self._free = ~(model.topology.first_order | model.topology.cyclic)
+        self._wheelsets = [b for b in model.vehicle.bodies if b.kind == "wheelset"]
+        for body in self._wheelsets:
+            self._free[model.topology.start[body.name] + np.array([2, 4])] = False
+
+    def preload(self, stiffness, load):
+        """Preload for stiffnesses (components,) and a load (n,) in N and N m; sets it in the model."""
+        moved = np.append(self._displacement(self._matrix(stiffness), load), 0.0)
+        forces = stiffness * (self._form * moved[self._index]).sum(axis=1)
+        split = 6 * len(self.model.bushings)
+        bushing_forces, law_forces = forces[:split].reshape(-1, 6), forces[split:]
+        self.model.set_preload(bushing_forces, law_forces)
+        return Preload(bushing_forces, law_forces, self._wheel_loads())
+
+    def _matrix(self, stiffness):
+        """Elastic stiffness sum k e e^T at the design position, (n, n)."""
+        n = self.model.size + 1
+        values = (self._products * stiffness[:, None, None]).ravel()
+        return np.bincount(self._entries, values, n * n).reshape(n, n)[:-1, :-1]
+
+    def _displacement(self, stiffness, load):
+        """Static displacement with the wheelsets held by the rails and free rigid motions held."""
+        picked = np.flatnonzero(self._free & ~self._held(stiffness))
+        moved = np.zeros(self.model.size)
+        matrix = stiffness[picked[:, None], picked]
+        try:
+            moved[picked] = np.linalg.solve(matrix, load[picked])
+            wrong = np.abs(matrix @ moved[picked] - load[picked]).max(initial=0.0)
+            scale = np.abs(load).max(initial=1.0)
+        except np.linalg.LinAlgError:
+            wrong, scale = np.inf, 1.0
+        if not wrong <= 1e-6 * scale or np.abs(moved).max(initial=0.0) > 1e3:
+            raise ModelError(_unheld(self.model, picked, matrix))
+        return moved
+
+    def _held(self, stiffness):
+        """True for x, y or yaw of the first body where the whole vehicle can move so without force."""
+        first, held = self.model.topology.start[self.model.vehicle.bodies[0].name], np.zeros(self.model.size, bool)
+        size = np.abs(stiffness).max(initial=1.0)
+        force = np.abs(stiffness @ self._motions).max(axis=0)
+        held[first + _RIGID[force < _FREE * size * np.abs(self._motions).max(axis=0)]] = True
+        return held
+
+    def _wheel_loads(self):
+        """Reactions of the rails, N: left and right of each wheelset, from z and roll."""
+        r, loads = self.model.residual(), []
+        for body in self._wheelsets:
+            k = self.model.topology.start[body.name]
+            mean, moment = -0.5 * r[k + 2], -0.5 * r[k + 4] / body.contact_half_spacing
+            loads += [mean - moment, mean + moment]
+            if min(loads[-2:]) <= 0.0:
+                raise ModelError(f"{body.name}: static wheel loads {loads[-2] / 1e3:.3g} kN left, {loads[-1] / 1e3:.3g} kN "
+                                 "right; both must be positive: check masses and the sides of its springs")
+        return np.array(loads)
 
 
 def _deformations(model):
-    """Rows de/dq of every component at the design position, and their stiffnesses."""
-    pair, count = model.bushing_pairs, len(model.bushings)
+    """Where every component's deformation e comes from: coordinates and de/dq there, each (components, 12)."""
+    pair = model.bushing_pairs
     axes = np.array([e.axes for e in model.bushings]).reshape(-1, 3, 3)
-    shift, turn = _relative_motion(pair)
-    six = np.concatenate([np.swapaxes(axes, 1, 2) @ part for part in (shift, turn)], axis=1)
-    rows = [_scattered(six, pair.index, model.size).reshape(6 * count, model.size)]
-    stiffness = [bushing_diagonals(model.bushings)[0].ravel()]
-
-    pair = model.law_pairs
-    along = law_directions(model.laws, pair.apart)
-    scalar = along[:, None, :] @ _relative_motion(pair)[0]
-    rows.append(_scattered(scalar, pair.index, model.size)[:, 0])
-    stiffness.append([slope_at_rest(e) for e in model.laws])
-    return np.vstack(rows), np.concatenate(stiffness)
+    six = np.concatenate([np.swapaxes(axes, 1, 2) @ part for part in _relative_motion(pair)], axis=1)
+    scalar = law_directions(model.laws, model.law_pairs.apart)[:, None, :] @ _relative_motion(model.law_pairs)[0]
+    index = np.concatenate([np.repeat(pair.index, 6, axis=0), model.law_pairs.index])
+    return np.where(index < 0, model.size, index), np.concatenate([six.reshape(-1, 12), scalar[:, 0]])
 
 
 def _relative_motion(pair):
@@ -111,50 +168,14 @@ def _turning(arm):
     return matrix
 
 
-def _scattered(values, index, size):
-    """Values (count, rows, 12) placed in the model's columns, (count, rows, size)."""
-    wide = np.zeros((*values.shape[:2], size + 1))  # the last column takes what does not exist
-    count, rows = values.shape[:2]
-    where = np.broadcast_to(index[:, None, :], values.shape)
-    np.add.at(wide, (np.arange(count)[:, None, None], np.arange(rows)[None, :, None], where), values)
-    return wide[:, :, :size]
-
-
-def _displacement(model, stiffness, load):
-    """Static displacement with the wheelsets held by the rails and free rigid motions held."""
-    topo = model.topology
-    free = ~(topo.first_order | topo.cyclic)
+def _rigid_motions(model):
+    """The whole vehicle shifted along and across the track and turned about z, (n, 3)."""
+    motions = np.zeros((model.size, 3))
     for body in model.vehicle.bodies:
-        if body.kind == "wheelset":
-            free[topo.start[body.name] + np.array([2, 4])] = False
-    _hold_rigid_motions(model, stiffness, free)
-    moved = np.zeros(model.size)
-    picked = np.flatnonzero(free)
-    matrix = stiffness[np.ix_(picked, picked)]
-    try:
-        moved[picked] = np.linalg.solve(matrix, load[picked])
-        wrong = np.abs(matrix @ moved[picked] - load[picked]).max(initial=0.0)
-        scale = np.abs(load).max(initial=1.0)
-    except np.linalg.LinAlgError:
-        wrong, scale = np.inf, 1.0
-    if not wrong <= 1e-6 * scale or np.abs(moved).max(initial=0.0) > 1e3:
-        raise ModelError(_unheld(model, picked, matrix))
-    return moved
-
-
-def _hold_rigid_motions(model, stiffness, free):
-    """Hold x, y or yaw of the first body where the whole vehicle can move so without force."""
-    names, topo = model.topology.coordinates, model.topology
-    motions = {"x": np.zeros(model.size), "y": np.zeros(model.size), "yaw": np.zeros(model.size)}
-    for body in model.vehicle.bodies:
-        k = topo.start[body.name]
-        motions["x"][k] = motions["y"][k + 1] = motions["yaw"][k + 3] = 1.0
-        motions["yaw"][k], motions["yaw"][k + 1] = -body.position[1], body.position[0]
-    first = model.vehicle.bodies[0].name
-    size = np.abs(stiffness).max(initial=1.0)
-    for axis, motion in motions.items():
-        if np.abs(stiffness @ motion).max() < _FREE * size * np.abs(motion).max():
-            free[names.index(f"{first}.{axis}")] = False
+        k = model.topology.start[body.name]
+        motions[k, 0] = motions[k + 1, 1] = motions[k + 3, 2] = 1.0
+        motions[k, 2], motions[k + 1, 2] = -body.position[1], body.position[0]
+    return motions
 
 
 def _unheld(model, picked, matrix):
@@ -164,20 +185,3 @@ def _unheld(model, picked, matrix):
     names = ", ".join(model.topology.coordinates[i] for i in worst)
     return (f"vehicle {model.vehicle.name!r} has no static equilibrium: nothing holds {names} (stiffness "
             f"{values[k]:.3g} against {values[-1]:.3g} at most, SI); give those bodies an element with stiffness there")
-
-
-def _wheel_loads(model):
-    """Reactions of the rails, N: left and right of each wheelset, from z and roll."""
-    r, loads = model.residual(), []
-    for body in model.vehicle.bodies:
-        if body.kind != "wheelset":
-            continue
-        k = model.topology.start[body.name]
-        mean, moment = -0.5 * r[k + 2], -0.5 * r[k + 4] / body.contact_half_spacing
-        loads += [mean - moment, mean + moment]
-        if min(loads[-2:]) <= 0.0:
-            raise ModelError(f"{body.name}: static wheel loads {loads[-2] / 1e3:.3g} kN left, {loads[-1] / 1e3:.3g} kN "
-                             "right; both must be positive: check masses and the sides of its springs")
-    return np.array(loads)
-
-

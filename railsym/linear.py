@@ -47,9 +47,10 @@ class RollingVehicle:
             "side": np.array(sides),
         }
 
-    def contacts(self, contact):
-        """WheelContacts of a resolved LinearContact at the static wheel loads."""
-        return contact.wheels(**self._wheels)
+    def contacts(self, contact, wheel_loads=None):
+        """WheelContacts of a resolved LinearContact, at the static wheel loads unless others are given (N)."""
+        loads = {} if wheel_loads is None else {"load": wheel_loads}
+        return contact.wheels(**(self._wheels | loads))
 
     @cached_property
     def _structure(self):
@@ -69,8 +70,9 @@ class RollingVehicle:
             vehicle=model.vehicle,
         )
 
-    def _wheel_rail(self, contacts):
-        """K and C2 of the wheel-rail contact: creep forces at 1 m/s are C2."""
+    def wheel_rail(self, contact, wheel_loads=None):
+        """K and C2 of the wheel-rail contact: creep forces at 1 m/s are C2; arguments as `contacts`."""
+        contacts = self.contacts(contact, wheel_loads)
         if self._contact is None:
             self._contact = _core.Assembly(self.model.topology.is_angle)
             columns, index = self.model.wheel_rows(contacts)
@@ -83,7 +85,7 @@ class RollingVehicle:
     def linear_model(self, contact):
         """Matrices for a contact; what is not given comes from the vehicle file."""
         contact = contact.resolved(self.model.vehicle.contact)
-        stiffness, with_inverse = self._wheel_rail(self.contacts(contact))
+        stiffness, with_inverse = self.wheel_rail(contact)
         structure = self._structure
         stiffness += structure.stiffness
         return replace(structure, stiffness=stiffness, damping_inverse_speed=with_inverse, contact=contact, base=structure)

@@ -47,6 +47,9 @@ class LinearModel:
     base : LinearModel, optional
         The same vehicle without its contact: same mass and C0. State matrices are then built from those of the base by what
         the contact changes, which is several times faster.
+    template : LinearModel, optional
+        A model of the same bodies and elements in the same places with other numbers: what only those decide (which motions
+        mirror into which, what the bodies are) is taken from there.
 
     Raises
     ------
@@ -68,6 +71,7 @@ class LinearModel:
     mirror: tuple[np.ndarray, np.ndarray] | None = None
     translation: np.ndarray | None = None
     base: LinearModel | None = field(default=None, repr=False)
+    template: LinearModel | None = field(default=None, repr=False)
 
     def __post_init__(self):
         n = len(self.coordinates)

@@ -18,7 +18,7 @@ _MOTION = {"x": "surge", "y": "lateral", "z": "bounce", "yaw": "yaw", "roll": "r
 _MOST = 0.75          # share of the energy that makes one bogie or wheelset "the" moving one
 _REAL = 1e-9          # |Im| / |lambda| of a real eigenvalue
 
-_labels_of_bases = WeakKeyDictionary()
+_known_labels = WeakKeyDictionary()    # of bases and templates
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,14 +54,17 @@ class MotionLabels:
 
     @classmethod
     def of(cls, model: LinearModel) -> MotionLabels:
-        """Labels of a model; what the vehicle without its contact decides is worked out once a vehicle."""
-        if model.base is None:
+        """Labels of a model; what the vehicle decides is worked out once for all models of one base or template."""
+        known = model.base or model.template
+        if known is None:
             return cls(model)
-        if model.base not in _labels_of_bases:
-            known = _labels_of_bases[model.base] = cls(model.base)
-            known.model = None          # would keep its own key alive
-        labels = copy(_labels_of_bases[model.base])
+        if known not in _known_labels:
+            made = _known_labels[known] = cls(known)
+            made.model = None          # would keep its own key alive
+        labels = copy(_known_labels[known])
         labels.model = model
+        if model.mass is not known.mass:
+            labels.mass = model.mass[labels.moving[:, None], labels.moving]
         return labels
 
     def _sorted_units(self, units):

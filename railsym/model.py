@@ -14,6 +14,7 @@ from railsym.track_frames import UniformTrack, body_motion, relative_poses
 
 _TENSOR = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 _BODY_KERNELS = ("rigid_body", "wheelset", "wheelset_with_axleboxes")
+BUSHINGS = ("bushing", "anti_roll_bar")     # types of element with six components
 _SIDES = {-1: "left", 1: "right"}
 _WHEEL_SLOTS = {"lam": "conicity", "slope": "slope", "grad": "slope_gradient", "N0": "load",
                 "kH": "normal_stiffness", "f11": "f11", "f22": "f22", "f23": "f23", "f33": "f33"}
@@ -58,24 +59,20 @@ class Model:
     def _add(self, name, columns, index, laws=None):
         """Add the instances of one kernel from columns of inputs."""
         if len(index):
-            self.assembly.add(name, input_table(name, columns, len(index)), index, laws)
-            self._tables[name] = len(index)
+            self._tables[name] = input_table(name, columns, len(index))
+            self.assembly.add(name, self._tables[name], index, laws)
 
     def _add_bodies(self):
-        groups = {name: [] for name in _BODY_KERNELS}
-        for body in self.vehicle.bodies:
-            groups[body.kind + ("_with_axleboxes" if body.axleboxes else "")].append(body)
-        for name, bodies in groups.items():
+        self._bodies = {name: [b for b in self.vehicle.bodies if _body_kernel(b) == name] for name in _BODY_KERNELS}
+        for name, bodies in self._bodies.items():
             if bodies:
                 start = np.array([[self.topology.start[b.name]] for b in bodies])
-                rows = [_body_row(b) for b in bodies]
-                columns = {key: np.array([row[key] for row in rows]) for key in rows[0]}
-                self._add(name, columns, start + np.arange(_core.kernels()[name].coordinates))
+                self._add(name, _body_columns(bodies), start + np.arange(_core.kernels()[name].coordinates))
 
     def _add_elements(self):
         split = {"bushing": [], "line": [], "axis": []}
         for element in self.vehicle.elements:
-            six = element.type in ("bushing", "anti_roll_bar")
+            six = element.type in BUSHINGS
             split["bushing" if six else "line" if element.axis is None else "axis"].append(element)
         self.bushings, self.laws = split["bushing"], [*split["line"], *split["axis"]]
         self._pairs = {name: pairs(self.topology, elements) for name, elements in split.items()}
@@ -127,7 +124,7 @@ class Model:
 
     def _fill(self, kernel, key, value):
         if kernel in self._tables:
-            self.assembly.set_input(kernel, key, np.full(self._tables[kernel], value))
+            self.assembly.set_input(kernel, key, np.full(len(self._tables[kernel]), value))
 
     def _move_pairs(self, speed):
         """Rates of the track frames against each other, which differ in a curve."""
@@ -136,6 +133,34 @@ class Model:
             for key in ("dD", "wf"):
                 for k in range(3):
                     self.assembly.set_input(name, f"{key}{k}", pose[key][:, k])
+
+    def set_bodies(self, bodies):
+        """Give bodies of one group other masses and inertias; they stay where they are."""
+        name = _body_kernel(bodies[0])
+        rows = [k for k, b in enumerate(self._bodies[name]) if b.group == bodies[0].group]
+        self._set_inputs(name, rows, input_table(name, _body_columns(bodies), len(bodies)))
+
+    def set_bushings(self, rows, stiffness, damping):
+        """Give bushings other stiffnesses and dampings, (6,) each; ``rows`` counts in `bushings`."""
+        slot, values = _core.kernels()["bushing"].slot_of, self._tables["bushing"][rows]
+        values[:, slot["k0"]:slot["k0"] + 6], values[:, slot["c0"]:slot["c0"] + 6] = stiffness, damping
+        self._set_inputs("bushing", rows, values)
+
+    def set_laws(self, rows, record):
+        """Give line and axis elements the numbers of another law record of the same kind; ``rows`` counts in `laws`."""
+        lines = sum(e.axis is None for e in self.laws)
+        for name, first, after in (("line", 0, lines), ("axis", lines, len(self.laws))):
+            inside = [row - first for row in rows if first <= row < after]
+            if inside:
+                self._law_tables[name].set_numbers(inside, record)
+
+    def _set_inputs(self, kernel, rows, values):
+        """Give instances of a kernel other inputs (rows, inputs); slots that change from step to step hold 0 in both."""
+        table = self._tables[kernel]
+        changed = np.flatnonzero((table[rows] != values).any(axis=0))
+        table[rows] = values
+        for slot in changed:
+            self.assembly.set_input(kernel, _core.kernels()[kernel].inputs[slot], table[:, slot])
 
     def set_preload(self, bushing_forces, law_forces):
         """Static forces at the design position.
@@ -216,6 +241,16 @@ def set_wheels(assembly, contacts):
     """Give the wheel-rail kernel of an assembly new contact parameters."""
     for slot, field in _WHEEL_SLOTS.items():
         assembly.set_input("wheel_rail", slot, getattr(contacts, field))
+
+
+def _body_kernel(body):
+    return body.kind + ("_with_axleboxes" if body.axleboxes else "")
+
+
+def _body_columns(bodies):
+    """Inputs of bodies of one kernel."""
+    rows = [_body_row(b) for b in bodies]
+    return {key: np.array([row[key] for row in rows]) for key in rows[0]}
 
 
 def _body_row(body):

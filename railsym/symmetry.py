@@ -22,8 +22,9 @@ _PLACE = 1e-6               # m, two positions that differ less are one
 _DIFFERENCE = 1e-9          # of the largest entry in a row: assembling in another order moves the last digits only
 _ROUNDING = 1e-14           # of the largest entry of a matrix
 
-_mirrors_of_bases = WeakKeyDictionary()
-_halves_of_bases = WeakKeyDictionary()        # (antisymmetric, symmetric) LinearModel
+# of models that others were made from: bases without contact, templates with other numbers
+_known_mirrors = WeakKeyDictionary()
+_known_halves = WeakKeyDictionary()           # (antisymmetric, symmetric) LinearModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,24 +79,27 @@ def split(model: LinearModel) -> tuple[Part, ...]:
     if mirror is None:
         index, one = np.arange(model.size), np.ones(model.size)
         return (Part(model, 0, index, index, one, 0 * one, model),)
-    if model.base is None or mirror is not _mirrors_of_bases.get(model.base):
+    known = model.base or model.template
+    if known is None or mirror is not _known_mirrors.get(known):
         return tuple(_part(model, mirror, parity) for parity in (-1, 1))
-    if model.base not in _halves_of_bases:
-        _halves_of_bases[model.base] = [_part(model.base, mirror, parity).model for parity in (-1, 1)]
-    return tuple(_part(model, mirror, half_parity, half) for half_parity, half in zip((-1, 1), _halves_of_bases[model.base]))
+    if known not in _known_halves:
+        _known_halves[known] = [_part(known, mirror, parity).model for parity in (-1, 1)]
+    return tuple(_part(model, mirror, parity, half) for parity, half in zip((-1, 1), _known_halves[known]))
 
 
 def find_mirror(model: LinearModel) -> tuple[np.ndarray, np.ndarray] | None:
     """Permutation and signs of the mirroring that all matrices commute with, or None."""
-    names = MATRICES
-    if model.mirror is None and model.base is not None:
-        # contact keeps the coordinates and most matrices: those were looked at when the base was
-        if model.base not in _mirrors_of_bases:
-            _mirrors_of_bases[model.base] = find_mirror(model.base)
-        mirror = _mirrors_of_bases[model.base]
-        names = [name for name in MATRICES if getattr(model, name) is not getattr(model.base, name)]
+    names, known = MATRICES, model.base or model.template
+    if model.mirror is not None:
+        mirror = model.mirror
+    elif known is None:
+        mirror = _mirror_of_vehicle(model)
     else:
-        mirror = model.mirror if model.mirror is not None else _mirror_of_vehicle(model)
+        # the same coordinates, and mostly the same matrices: those were looked at already
+        if known not in _known_mirrors:
+            _known_mirrors[known] = find_mirror(known)
+        mirror = _known_mirrors[known]
+        names = [name for name in MATRICES if getattr(model, name) is not getattr(known, name)]
     return mirror if mirror is not None and all(_commutes(getattr(model, name), *mirror) for name in names) else None
 
 
@@ -110,8 +114,8 @@ def _commutes(matrix, permutation, sign) -> bool:
     return bool((np.abs(image - value) <= allowed[row]).all())
 
 
-def _part(model: LinearModel, mirror, parity: int, base: LinearModel | None = None) -> Part:
-    """One half of a model; where the same half of its base is known, only what the contact changes is folded."""
+def _part(model: LinearModel, mirror, parity: int, known: LinearModel | None = None) -> Part:
+    """One half of a model; where the same half of its base or template is known, only the matrices that differ are folded."""
     permutation, sign = mirror
     index = np.arange(model.size)
     keep = (index < permutation) | ((index == permutation) & (sign == parity))
@@ -126,9 +130,11 @@ def _part(model: LinearModel, mirror, parity: int, base: LinearModel | None = No
         columns = rows[:, first] * weight_first + rows[:, second] * weight_second
         return columns / weight_first[:, None]
 
-    if base is not None:
-        changed = {name: folded(getattr(model, name)) for name in MATRICES if getattr(model, name) is not getattr(model.base, name)}
-        half = replace(base, **changed, contact=model.contact, base=base)
+    if known is not None:
+        origin = model.base or model.template
+        changed = {name: folded(getattr(model, name)) for name in MATRICES if getattr(model, name) is not getattr(origin, name)}
+        related = {"base": known} if origin is model.base else {"template": known}
+        half = replace(known, **changed, vehicle=model.vehicle, contact=model.contact, **related)
         return Part(half, parity, first, second, weight_first, weight_second, model)
     translation = model.uniform_translation
     if translation is not None:
