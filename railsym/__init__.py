@@ -52,7 +52,7 @@ _MODULE_OF = {
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("criteria", "dampers", "nonlinear", "plots", "results", "simulation", "studies", "sweep", "track")
+_SUBMODULES = ("criteria", "dampers", "nonlinear", "optimise", "plots", "results", "simulation", "studies", "sweep", "track", "uncertainty")
 
 _get, __dir__, _names = lazy(__name__, _MODULE_OF, _SUBMODULES)
 __all__ = [*_names, "__version__"]

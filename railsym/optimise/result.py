@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What an optimisation found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from railsym.optimise.history import Case
+from railsym.optimise.problem import Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """The best case of an optimisation with one objective.
+
+    Attributes
+    ----------
+    problem : Problem
+    values : dict of str to float
+        SI.
+    outputs : dict of str to float
+    objective : float
+        In its unit.
+    violation : float
+        Largest relative violation of a constraint; 0 where all are kept.
+    start : Case or None
+        Where a local method began.
+    at_bounds : tuple of str
+        Variables that ended at a bound.
+    converged : bool
+        By the method's own judgement.
+    evaluations, computed, failed : int
+        Cases asked for, computed in this run (others came from the history), failed.
+    method, message : str
+    cases : tuple of Case
+        All of them, in order.
+    """
+
+    problem: Problem = field(repr=False)
+    values: dict[str, float]
+    outputs: dict[str, float]
+    objective: float
+    violation: float
+    start: Case | None = field(repr=False)
+    at_bounds: tuple[str, ...]
+    converged: bool
+    evaluations: int
+    computed: int
+    failed: int
+    method: str
+    message: str
+    cases: tuple[Case, ...] = field(repr=False)
+
+    def __str__(self):
+        objective = self.problem.objectives[0]
+        lines = [f"{objective.sense} {objective.name}: {self.objective:.6g} {objective.unit} ({self.method}: {self.message})"]
+        if self.start is not None and not self.start.failed:
+            lines[0] += f"; {objective.value(self.start.outputs):.6g} at the start"
+        for variable in self.problem.variables:
+            mark = "  at its bound" if variable.name in self.at_bounds else ""
+            lines.append(f"  {variable.name:44} {self.values[variable.name]:12.6g} {variable.unit:8} in {variable.low:g} to {variable.high:g}{mark}")
+        lines += [f"  {c}: {self.outputs[c.output]:.6g}{'' if max(c.violations(self.outputs)) <= 1e-6 else '  BROKEN'}" for c in self.problem.constraints]
+        return "\n".join([*lines, f"  {self.evaluations} cases, {self.computed} of them computed now, {self.failed} failed"])
+
+    def plot(self, **options):
+        """Draw how the objective went; options and axes as `railsym.plots.plot_optimisation`."""
+        from railsym.plots import plot_optimisation
+        return plot_optimisation(self, **options)
+
+
+@dataclass(frozen=True, eq=False)
+class ParetoFront:
+    """Cases that none other beats in all objectives at once.
+
+    Attributes
+    ----------
+    problem : Problem
+    values : ndarray, shape (n, k)
+        SI, sorted by the first objective, its best first.
+    objectives : ndarray, shape (n, m)
+        In their units.
+    outputs : tuple of dict
+    numbers : tuple of int
+        Numbers of the cases.
+    cases : tuple of Case
+        All that were asked for, in order.
+    generations, evaluations, computed, failed : int
+    hypervolume : ndarray, shape (generations,)
+        Of the front after each generation, in the unit box of all objectives seen: how it converged.
+    message : str
+    """
+
+    problem: Problem = field(repr=False)
+    values: np.ndarray
+    objectives: np.ndarray
+    outputs: tuple[dict, ...]
+    numbers: tuple[int, ...]
+    cases: tuple[Case, ...] = field(repr=False)
+    generations: int
+    evaluations: int
+    computed: int
+    failed: int
+    hypervolume: np.ndarray
+    message: str
+
+    def __len__(self):
+        return len(self.numbers)
+
+    def __str__(self):
+        head = [o.name for o in self.problem.objectives] + list(self.problem.names)
+        rows = np.hstack([self.objectives, self.values])
+        width = [max(12, len(name)) for name in head]
+        lines = [self.message, "  ".join(name.rjust(w) for name, w in zip(head, width))]
+        lines += ["  ".join(f"{value:{w}.5g}" for value, w in zip(row, width)) for row in rows]
+        return "\n".join(lines)
+
+    def plot(self, **options):
+        """Draw it; options and axes as `railsym.plots.plot_pareto`."""
+        from railsym.plots import plot_pareto
+        return plot_pareto(self, **options)
