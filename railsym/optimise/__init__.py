@@ -22,6 +22,7 @@ _MODULE_OF = {
     "Robust": "robust",
     "SpeedDesign": "speeds",
     "Variable": "problem",
+    "design_of": "design",
     "optimise": "local",
     "pareto_front": "pareto",
 }

@@ -3,31 +3,17 @@
 
 from __future__ import annotations
 
-from concurrent.futures import as_completed
-from dataclasses import dataclass
-from typing import Any
+import hashlib
+import pickle
+from concurrent.futures import BrokenExecutor, CancelledError, ThreadPoolExecutor, as_completed
 
 import numpy as np
 
 from railsym.optimise.errors import OptimisationError
 from railsym.optimise.history import Case, History
 
-
-@dataclass(frozen=True)
-class _Job:
-    """A case for a worker: an error comes back as text, for the history."""
-
-    problem: Any
-    gradient: bool
-
-    def __call__(self, values):
-        try:
-            if self.gradient:
-                outputs, slopes = self.problem.evaluate.with_gradient(np.array(values))
-                return self.problem.checked(outputs), {name: tuple(map(float, g)) for name, g in slopes.items()}, ""
-            return self.problem.checked(self.problem.evaluate(np.array(values))), None, ""
-        except Exception as error:      # whatever it is: recorded, and the optimisation goes on without the case
-            return None, None, f"{type(error).__name__}: {error}"
+_RENEWALS = 2      # pools opened anew for one batch, when a worker is lost
+_problems = {}     # what a worker knows, by key
 
 
 class Evaluations:
@@ -37,15 +23,18 @@ class Evaluations:
     ----------
     problem : Problem
     history : History
-    executor : concurrent.futures.Executor, optional
-        One after another in this process when not given.
+    executor : optional
+        As `railsym.sweep.run` takes: an open `concurrent.futures.Executor`, a Dask client, or a pool of `railsym.sweep`. One after another in this
+        process when not given.
     follow : callable, optional
         Called with each case that was computed.
     """
 
     def __init__(self, problem, history: History, executor=None, follow=None):
-        self.problem, self.history, self.executor, self.follow = problem, history, executor, follow
+        self.problem, self.history, self.follow = problem, history, follow
+        self.executor = executor.get_executor() if hasattr(executor, "get_executor") else executor
         self.computed, self._asked, self._next = 0, {}, 1 + max((case.number for case in history.cases), default=0)
+        self._carried = None
 
     @property
     def order(self):
@@ -56,11 +45,10 @@ class Evaluations:
         """Cases at several values (SI), in their order."""
         keys = [tuple(map(float, point)) for point in points]
         missing = [key for key in dict.fromkeys(keys) if self.history.find(key, gradient) is None]
-        job = _Job(self.problem, gradient)
         numbers = dict(zip(missing, range(self._next, self._next + len(missing))))
         self._next += len(missing)
-        for key, found in self._run(job, missing):
-            case = Case(numbers[key], key, found[0], found[2], found[1])
+        for key, found in self._run(missing, gradient):
+            case = Case(numbers[key], key, *found)
             self.history.add(case)
             self.computed += 1
             if self.follow is not None:
@@ -73,17 +61,78 @@ class Evaluations:
         """The case at these values."""
         return self.many([point], gradient)[0]
 
-    def _run(self, job, keys):
-        if self.executor is None:
+    def _run(self, keys, gradient):
+        """Values and results, as they come."""
+        if self.executor is None or not keys:
             for key in keys:
-                yield key, job(key)
+                yield key, evaluated(self.problem, key, gradient)
             return
-        futures = {self.executor.submit(job, key): key for key in keys}
+        left = list(keys)
+        for _ in range(1 + (_RENEWALS if hasattr(self.executor, "renew") else 0)):
+            try:
+                for key, found in self._spread(left, gradient):
+                    left.remove(key)
+                    yield key, found
+                return
+            except (BrokenExecutor, CancelledError) as error:
+                lost = error
+                if hasattr(self.executor, "renew"):
+                    self.executor.renew()
+        raise OptimisationError(f"a worker was lost ({lost}) while {len(left)} cases were under way: out of memory, or killed; what was computed is "
+                                "in the history, resume to go on") from lost
+
+    def _spread(self, keys, gradient):
+        if isinstance(getattr(self.executor, "executor", self.executor), ThreadPoolExecutor):
+            futures = {self.executor.submit(evaluated, self.problem, key, gradient): key for key in keys}
+        else:
+            name, _ = self._payload()
+            futures = {self.executor.submit(evaluated_there, name, None, key, gradient): key for key in keys}
         try:
+            strangers = []
+            for future in as_completed(futures):
+                found = future.result()
+                if found is None:
+                    strangers.append(futures[future])
+                else:
+                    yield futures[future], found
+            # workers that do not know the problem yet get it with the case
+            futures = {self.executor.submit(evaluated_there, *self._payload(), key, gradient): key for key in strangers}
             for future in as_completed(futures):
                 yield futures[future], future.result()
-        except (OSError, RuntimeError) as error:      # BrokenExecutor is a RuntimeError
-            raise OptimisationError(f"a worker was lost ({error}); what was computed is in the history, resume to go on") from error
         finally:
             for future in futures:
                 future.cancel()
+
+    def _payload(self):
+        """Key and pickled problem."""
+        if self._carried is None:
+            try:
+                content = pickle.dumps(self.problem)
+            except (pickle.PicklingError, AttributeError, TypeError) as error:
+                raise OptimisationError(f"evaluate cannot be sent to workers ({error}); define it in a module, or use threads") from None
+            self._carried = hashlib.sha256(content).hexdigest(), content
+        return self._carried
+
+
+def evaluated(problem, values, gradient):
+    """Outputs, error and gradients of a case: whatever goes wrong becomes the case's error, and the optimisation goes on without it."""
+    from railsym.sweep.worker import error_text, one_thread
+
+    try:
+        with one_thread():
+            if gradient:
+                outputs, slopes = problem.evaluate.with_gradient(np.array(values))
+                return problem.checked(outputs), "", {name: tuple(map(float, slope)) for name, slope in slopes.items()}
+            return problem.checked(problem.evaluate(np.array(values))), "", None
+    except Exception as error:
+        return None, error_text(error), None
+
+
+def evaluated_there(key, content, values, gradient):
+    """Entry of a worker; None where it does not know the problem and was not given it."""
+    if key not in _problems:
+        if content is None:
+            return None
+        _problems.clear()
+        _problems[key] = pickle.loads(content)
+    return evaluated(_problems[key], values, gradient)

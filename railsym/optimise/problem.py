@@ -207,7 +207,7 @@ class Problem:
                 raise OptimisationError(f"there is no output {name!r}; there are {', '.join(outputs)}" + (f" (nearest: {near[0]})" if near else ""))
             if not math.isfinite(outputs[name]):
                 raise OptimisationError(f"output {name!r} is {outputs[name]}")
-        return {name: float(value) for name, value in outputs.items()}
+        return {name: float(value) for name, value in outputs.items() if math.isfinite(value)}
 
     def violation(self, outputs):
         """Largest violation of a constraint; 0 where all are kept."""

@@ -110,3 +110,9 @@ def _statistic(text):
     if found["factor"]:
         return found["output"], lambda values: float(np.mean(values) + float(found["factor"]) * np.std(values, ddof=1))
     return found["output"], {"mean": lambda values: float(np.mean(values)), "std": lambda values: float(np.std(values, ddof=1))}[found["name"]]
+
+
+def output_of(statistic):
+    """The output that a statistic is of; None where the text is no statistic."""
+    found = _STATISTIC.fullmatch(statistic)
+    return found["output"] if found else None

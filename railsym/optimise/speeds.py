@@ -26,16 +26,24 @@ class SpeedDesign:
 
     Notes
     -----
-    Outputs are ``speed`` (m/s) and ``frequency_hz``; with several conicities ``speed(0.1)``, ``frequency_hz(0.1)``, ... A vehicle that stays stable over
-    the whole range of speeds has its upper end as ``speed``, no gradient there, and ``beyond_range`` = 1 (0 otherwise): the speed is at least that.
-    One that is unstable at the lower end already has no result.
+    Outputs are ``speed`` (m/s) and ``frequency_hz``; with several conicities ``speed(0.1)``, ``frequency_hz(0.1)``, ... A vehicle that stays stable
+    over the whole range of speeds has its upper end as ``speed``, no gradient there, and ``beyond_range`` = 1 (0 otherwise): the speed is at least
+    that. One that is unstable at the lower end already has no result.
     """
 
     def __init__(self, vehicle, names: Sequence[str], conicity=None, **options):
         from railsym.uncertainty.speed_model import SpeedModel
 
         several = conicity is not None and np.ndim(conicity) > 0
-        self.models = {f"({c:g})" if several else "": SpeedModel(vehicle, names, conicity=c, **options) for c in (conicity if several else [conicity])}
+        self.models = {f"{{}}({c:g})" if several else "{}": SpeedModel(vehicle, names, conicity=c, **options)
+                       for c in (conicity if several else [conicity])}
+
+    @classmethod
+    def of(cls, models):
+        """From models by prefix of their outputs: ``{"low.": SpeedModel(...)}``."""
+        made = cls.__new__(cls)
+        made.models = {prefix + "{}": model for prefix, model in models.items()}
+        return made
 
     def __call__(self, x):
         """Outputs at x (SI).
@@ -59,15 +67,16 @@ class SpeedDesign:
 
     def _outputs(self, x, with_gradient):
         outputs, slopes, beyond = {}, {}, 0.0
-        for mark, model in self.models.items():
-            found, vehicle, contact = model.stability(x)
+        for form, model in self.models.items():
+            speed, frequency = form.format("speed"), form.format("frequency_hz")
+            found = model.stability(x)
             if found.unstable_at_start:
-                raise OptimisationError(f"unstable at {model.speed_range[0]:g} m/s already, at conicity {contact.conicity:g}: {found.message}")
+                raise OptimisationError(f"{speed}: unstable at {model.speed_range[0]:g} m/s already: {found.message}")
             if found.speed is None:
-                beyond, outputs[f"speed{mark}"] = 1.0, float(model.speed_range[1])
-                slopes[f"speed{mark}"] = np.zeros(len(x))
+                beyond, outputs[speed] = 1.0, float(model.speed_range[1])
+                slopes[speed] = np.zeros(len(x))
                 continue
-            outputs |= {f"speed{mark}": found.speed, f"frequency_hz{mark}": found.frequency_hz}
+            outputs |= {speed: found.speed, frequency: found.frequency_hz}
             if with_gradient:
-                slopes |= dict(zip((f"speed{mark}", f"frequency_hz{mark}"), model.slopes(found, vehicle, contact, x)))
+                slopes |= dict(zip((speed, frequency), model.slopes(found, x)))
         return outputs | {"beyond_range": beyond}, slopes

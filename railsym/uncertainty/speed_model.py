@@ -10,6 +10,8 @@ import numpy as np
 from railsym.errors import ModelError
 from railsym.uncertainty.errors import UncertaintyError
 
+CONICITY = "conicity"
+
 
 class SpeedModel:
     """Critical speed and gradient: ``value, gradient = model(x)``.
@@ -19,9 +21,9 @@ class SpeedModel:
     vehicle : Vehicle
         With its configuration applied.
     names : sequence of str
-        Dotted names of single numbers; "conicity" and "contact.friction" are the contact's.
-    conicity, criterion, damping_ratio, speed_range, contact, frequency_band
-        As `railsym.critical_speed`, one conicity.
+        Dotted names of single numbers; "conicity" (or "contact.conicity") is the contact's.
+    options
+        conicity, criterion, damping_ratio, speed_range, contact, frequency_band of `railsym.critical_speed`; one conicity.
 
     Attributes
     ----------
@@ -45,29 +47,66 @@ class SpeedModel:
 
     output, unit = "critical speed", "m/s"
 
-    def __init__(self, vehicle, names, conicity=None, criterion=None, damping_ratio=None, speed_range=None, contact=None, frequency_band=None):
-        from railsym.critical_speed import SPEED_RANGE, contact_or_default, damping_ratio_of
-        from railsym.stability import FREQUENCY_BAND
+    def __init__(self, vehicle, names, **options):
+        from railsym.critical_cases import CriticalSpeedSolver
 
-        contact = contact_or_default(contact)
-        self.vehicle = vehicle
-        self.contact = contact if conicity is None else replace(contact, conicity=float(conicity))
+        self.solver = CriticalSpeedSolver(vehicle, **options)
         self.names = tuple(names)
-        self.ratio = damping_ratio_of(criterion, damping_ratio)
-        self.speed_range = SPEED_RANGE if speed_range is None else speed_range
-        self.band = FREQUENCY_BAND if frequency_band is None else frequency_band
-        self._fields = {"conicity"} | {f.name for f in fields(self.contact) if getattr(self.contact, f.name) is not None}
+        self._given = {f.name for f in fields(self.contact) if getattr(self.contact, f.name) is not None}
         self.units = tuple(self._unit(name) for name in self.names)
+
+    @classmethod
+    def of(cls, study, names=None, analysis=None):
+        """That of a study of critical speeds.
+
+        Parameters
+        ----------
+        study : railsym.sweep.Study
+        names : sequence of str, optional
+            The study's factors when not given.
+        analysis : railsym.sweep.CriticalSpeed, optional
+            In place of the study's.
+
+        Raises
+        ------
+        UncertaintyError
+            A study of something else, or with a factor that is no number.
+        """
+        from railsym.sweep.critical_speed import CriticalSpeed
+        from railsym.sweep.linear_contact import contact_of
+
+        analysis = analysis or study.analysis
+        if not isinstance(analysis, CriticalSpeed):
+            raise UncertaintyError(f"gradients are there for critical speeds; the analysis is {analysis.kind!r}")
+        texts = [name for k, name in enumerate(study.names) if study.space.labels(k)]
+        if names is None and texts:
+            raise UncertaintyError(f"factor {texts[0]!r} is a list of texts: there is no gradient by it")
+        return cls(study.base(), study.names if names is None else names, contact=contact_of(analysis.conicity, study.settings),
+                   criterion=analysis.criterion, damping_ratio=analysis.damping_ratio, speed_range=analysis.speed_range,
+                   frequency_band=analysis.frequency_band)
+
+    @property
+    def vehicle(self):
+        """Before the changes."""
+        return self.solver.vehicle
+
+    @property
+    def contact(self):
+        """Before the changes."""
+        return self.solver.contact
+
+    @property
+    def speed_range(self):
+        """m/s."""
+        return self.solver.speed_range
 
     def _field(self, name):
         """Field of the contact that a parameter is; None where the vehicle has it."""
-        if name == "conicity":
-            return name
-        head, _, key = name.partition(".")
-        return key if head == "contact" and key in self._fields else None
+        head, _, key = name.rpartition(".")
+        return key if (head == "contact" and key in self._given) or name == CONICITY else None
 
     def _unit(self, name):
-        if name == "conicity":
+        if self._field(name) == CONICITY:
             return "-"
         if name not in self.vehicle.parameters:
             self.vehicle.replace({name: 0.0})      # raises, and names the nearest parameters
@@ -78,27 +117,40 @@ class SpeedModel:
         return np.array([getattr(self.contact, self._field(name)) if self._field(name) else float(self.vehicle.parameters[name].value)
                          for name in self.names])
 
-    def _changed(self, x):
-        """Vehicle and contact at x."""
-        values = {name: float(value) for name, value in zip(self.names, x, strict=True)}
-        contact = replace(self.contact, **{self._field(name): value for name, value in values.items() if self._field(name)})
-        changes = {name: value for name, value in values.items() if not self._field(name)}
-        return self.vehicle.replace(changes) if changes else self.vehicle, contact
+    def _split(self, x):
+        """Changes of the vehicle and of the contact at x."""
+        values = dict(zip(self.names, map(float, x), strict=True))
+        contact = {self._field(name): value for name, value in values.items() if self._field(name)}
+        return {name: value for name, value in values.items() if not self._field(name)}, contact
+
+    def _solver(self, contact):
+        """The solver, and the conicity of a case; other numbers of the contact need a solver of their own."""
+        conicity = contact.get(CONICITY)
+        others = {name: value for name, value in contact.items() if name != CONICITY}
+        if not others:
+            return self.solver, conicity
+        from copy import copy
+
+        solver = copy(self.solver)
+        solver.contact = replace(solver.contact, **others)
+        return solver, conicity
 
     def stability(self, x):
-        """`railsym.stability.Stability` at x, with the vehicle and the contact there."""
-        from railsym.linear import linear_model
-        from railsym.stability import stability
+        """`railsym.stability.Stability` at x."""
+        changes, contact = self._split(x)
+        solver, conicity = self._solver(contact)
+        return solver.solve(changes, conicity)
 
-        vehicle, contact = self._changed(x)
-        found, = stability(linear_model(vehicle, contact), (self.ratio,), self.speed_range, self.band)
-        return found, vehicle, contact
+    def _model(self, x):
+        changes, contact = self._split(x)
+        solver, conicity = self._solver(contact)
+        return solver.model(changes, conicity)
 
     def _found(self, x):
-        found, vehicle, contact = self.stability(x)
+        found = self.stability(x)
         if found.speed is None:
             raise ModelError(f"no critical speed at {dict(zip(self.names, map(float, x)))}: {found.message}")
-        return found, vehicle, contact
+        return found
 
     def value(self, x) -> float:
         """Critical speed alone, m/s.
@@ -108,7 +160,7 @@ class SpeedModel:
         ModelError
             No critical speed within the range.
         """
-        return self._found(x)[0].speed
+        return self._found(x).speed
 
     def __call__(self, x):
         """Critical speed (m/s) and its gradient, shape (k,), per SI unit.
@@ -120,31 +172,31 @@ class SpeedModel:
         UncertaintyError
             A parameter that cannot change by itself, such as one of two inertias that must stay equal.
         """
-        found, vehicle, contact = self._found(x)
-        return found.speed, self.slopes(found, vehicle, contact, x)[0]
+        found = self._found(x)
+        return found.speed, self.slopes(found, x)[0]
 
-    def slopes(self, found, vehicle, contact, x):
+    def slopes(self, found, x):
         """Gradients (k,) of the speed (m/s) and of the frequency (Hz) where `stability` found one.
 
         Raises
         ------
         UncertaintyError
         """
-        from railsym.sensitivity import sensitivities
+        from railsym.sensitivity import Parameter, sensitivities
 
+        x = np.array(x, float)
         point = next(c for c in found.crossings if c.speed == found.speed)
-        given = sensitivities(point, [self._parameter(vehicle, contact, name, float(value)) for name, value in zip(self.names, x)])
+        given = sensitivities(point, [Parameter(name, x[k], self.units[k], self._along(x, k)) for k, name in enumerate(self.names)])
         if given.skipped:
             name, reason = next(iter(given.skipped.items()))
             raise UncertaintyError(f"no derivative by {name!r}: {reason}")
         place = [given.names.index(name) for name in self.names]
         return given.speed_derivative[place], given.frequency_derivative[place]
 
-    def _parameter(self, vehicle, contact, name, value):
-        from railsym.linear import linear_model
-        from railsym.sensitivity import Parameter
-
-        field = self._field(name)
-        if field:
-            return Parameter(name, value, "-", lambda new: linear_model(vehicle, replace(contact, **{field: new})))
-        return Parameter(name, value, self.vehicle.parameters[name].unit, lambda new: linear_model(vehicle.replace({name: new}), contact))
+    def _along(self, x, k):
+        """Value of parameter k to the linear model, the others as at x."""
+        def change(value):
+            point = x.copy()
+            point[k] = value
+            return self._model(point)
+        return change
