@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A contact table from the columns of another program: one wheel over its lateral shift, at one or several static loads.
 
-With both wheels touching (roll phi(y), positive right side down), the drop c of the right wheel without roll has dc/d(eta) =
--tan(angle + phi) over eta = y - r0 phi, and rolling by phi lowers it by phi times the lateral distance L of the contact, so that
+With both wheels touching (roll phi(y), positive right side down), eta = y - r0 phi and the contact at the lateral distance L, whose plane has
+the angle to the axle and angle - phi to the track plane, the wheelset's centre stands at c(eta) - phi L over its right rail. A wheelset that
+slides to dy and dphi keeps both touching, d(c - phi L) + L dphi = -tan(angle - phi) d(eta), so
 
-    c(eta_right) - phi L(y) = c(eta_left) + phi L(-y)                                                            (1)
+    dc/d(eta) = phi dL/d(eta) - tan(angle - phi)       c(eta_right) - phi L(y) = c(eta_left) + phi L(-y)         (1)
 
 eta and phi are found together by repetition. Load at the penetration p is K p^(3/2).
 """
@@ -63,8 +64,8 @@ def _closure(shift, columns, radius, reach):
     mirrored = lambda values: np.interp(-shift, shift, values)  # noqa: E731 beyond the last shift: the last value
     for _ in range(20):
         eta = shift - radius * roll
-        slope = -np.tan(angle + roll)
-        c = np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * np.diff(eta))])
+        slope = -np.tan(angle - roll)
+        c = np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * np.diff(eta) + 0.5 * (roll[1:] + roll[:-1]) * np.diff(distance))])
         c -= np.interp(0.0, eta, c)
         found = (c - mirrored(c)) / (distance + mirrored(distance))
         found[np.abs(shift) > reach] = np.interp(shift[np.abs(shift) > reach], shift[np.abs(shift) <= reach], found[np.abs(shift) <= reach])
@@ -82,24 +83,23 @@ def _core_table(eta, closure, columns, radius, half_spacing):
     nodes = _STEP * np.arange(-half - 1, half + 2)
     at = lambda values: np.interp(nodes, eta, values)  # noqa: E731
     angle, distance = (columns[k].mean(axis=1) for k in ("contact_angle_rad", "lateral_distance_m"))
-    slope_angle = angle + (columns["lateral_shift_m"][:, 0] - eta) / radius
-    deepest = 3.0 * float((columns["penetration_m"] * np.cos(slope_angle)[:, None]).max())
+    deepest = 3.0 * float((columns["penetration_m"] * np.cos(angle)[:, None]).max())
     rolls = _ROLL_STEP * (np.arange(_ROLLS) - _ROLLS // 2)
     radii = columns["rolling_radius_m"].mean(axis=1)
     c = np.stack([at(closure)[:, None] - at(distance)[:, None] * rolls,
-                  *(np.broadcast_to(at(values)[:, None], (len(nodes), _ROLLS)) for values in (np.cos(slope_angle), radii, distance))], axis=-1)
+                  *(np.broadcast_to(at(values)[:, None], (len(nodes), _ROLLS)) for values in (np.cos(angle), radii, distance))], axis=-1)
     field = np.zeros((len(nodes), _ROLLS, _LEVELS + 3, core.FIELDS))
     for level in range(_LEVELS + 3):
         normal = deepest * max((level - 1) / _LEVELS, 0.0) ** 2
-        for k, values in enumerate(_fields(columns, slope_angle, normal)):
+        for k, values in enumerate(_fields(columns, angle, normal)):
             field[:, :, level, k] = at(values)[:, None]
     shape = [nodes[0], _STEP, len(nodes), rolls[0], _ROLL_STEP, _ROLLS, _LEVELS + 3, 1, deepest, radius, half_spacing]
     return core.Table.of_arrays(shape, [[nodes[0], _STEP, len(nodes)]], [c], [field], values=True)
 
 
-def _fields(columns, slope_angle, normal):
-    """Stiffness, place, radius, slope angle, semi-axes over the root of the penetration, at a normal penetration (m); each (shifts,)."""
+def _fields(columns, angle, normal):
+    """Stiffness, place, radius, angle to the axle, semi-axes over the root of the penetration, at a normal penetration (m); each (shifts,)."""
     penetration = columns["penetration_m"]
     values = (columns["normal_load_N"] / penetration**1.5, columns["lateral_distance_m"], columns["rolling_radius_m"],
-              np.broadcast_to(slope_angle[:, None], penetration.shape), columns["a_m"] / np.sqrt(penetration), columns["b_m"] / np.sqrt(penetration))
+              np.broadcast_to(angle[:, None], penetration.shape), columns["a_m"] / np.sqrt(penetration), columns["b_m"] / np.sqrt(penetration))
     return [np.array([np.interp(normal, p, v) for p, v in zip(penetration, value)]) for value in values]

@@ -74,8 +74,8 @@ def load(path, *, side_spacing=1.5, wheel_radius=None):
     Notes
     -----
     A CSV table is of the right wheel of a symmetric pair, over lateral shifts at one or several static loads, with the wheelset rolling so
-    that both wheels touch. Its drop follows from the contact angles (the drop of a wheel that slides along its rail falls by the tangent
-    of the angle); its load over penetration is K p^(3/2) between the loads given, and as at the nearest one beyond. It knows no
+    that both wheels touch; its contact angle is that to the axle. Its drop follows from the contact angles (the drop of a wheel that slides
+    along its rail falls by the tangent of the angle to the track); its load over penetration is K p^(3/2) between the loads given, and as at the nearest one beyond. It knows no
     roll of its own: a wheelset that rolls keeps the contact's place on the rail.
     """
     path = Path(path)
