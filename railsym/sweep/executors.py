@@ -13,6 +13,8 @@ from contextlib import suppress
 
 from railsym.sweep.errors import SweepError
 
+PATIENCE = 30.0          # s until a scheduler must have answered
+
 
 class OwnPool:
     """A process pool that is opened anew when a worker is lost.
@@ -107,7 +109,7 @@ class Addressed(Given):
         except ImportError:
             raise SweepError(f"executor {address!r} is the address of a Dask scheduler; install it with: pip install 'railsym[cluster]'") from None
         try:
-            self.client = Client(address, timeout="10s")
+            self.client = Client(address, timeout=PATIENCE)
         except OSError as error:
             raise SweepError(f"no Dask scheduler answers at {address!r}: {error}") from None
         super().__init__(self.client.get_executor())
