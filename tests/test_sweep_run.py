@@ -46,7 +46,8 @@ def test_outputs_are_those_of_critical_speed(tmp_path):
     for k in range(0, 12, 5):
         case = results.study.case(k)
         found = rs.critical_speed(case.vehicle, case.settings["contact.conicity"])
-        assert results["speed"][k] == found.speed or (np.isnan(results["speed"][k]) and found.speed is np.ma.masked)
+        # both polish by Newton's method until a step below 1e-7, which leaves its square; they sum in different orders
+        np.testing.assert_allclose(results["speed"][k], found.speed.filled(np.nan), rtol=1e-11)
         assert case.vehicle.parameters["wheelset.mass"].value == results["wheelset.mass"][k]
     assert (results.status == "done").all() and not results.errors and results.unit("speed") == "m/s"
 
