@@ -91,16 +91,17 @@ class AnalysisDesign:
         RailsymError
             What an analysis raises.
         """
+        from railsym.sweep.worker import Case
+
         values = dict(zip(self.names, map(float, x), strict=True))
         inputs = frozenset().union(*self._inputs.values())
         changes = {name: value for name, value in values.items() if name not in inputs}
-        vehicle = self.vehicle.replace(changes) if changes else self.vehicle
         outputs, beyond = {}, 0.0
         for prefix, analysis in self.analyses.items():
             if prefix not in self._solvers:
                 self._solvers[prefix] = analysis.solver(self.vehicle)
             settings = {name: value for name, value in (self.settings | values).items() if name in self._inputs[prefix]}
-            found = self._solvers[prefix](vehicle, settings)
+            found = self._solvers[prefix](Case(self.vehicle, changes, settings))
             found, past = _within(found, analysis)
             beyond = max(beyond, past)
             outputs |= {prefix + name: float(value) for name, value in found.items() if not isinstance(value, str) and np.isfinite(value)}
