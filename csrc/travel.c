@@ -150,15 +150,15 @@ void rs_travel_steady(rs_travel *travel, int steady)
 	travel->written[0] = NAN;
 }
 
-static double travelled(rs_travel *travel, double time)
+double rs_travel_place(const rs_travel *travel, double time, double *V, double *dV)
 {
 	int piece = 0;
 	while (piece + 1 < travel->pieces && time >= travel->time[piece + 1])
 		piece++;
-	double t = time - travel->time[piece], dV = travel->acceleration[piece];
-	travel->dV = dV;
-	travel->V = travel->start_speed[piece] + dV * t;
-	return travel->place[piece] + t * (travel->start_speed[piece] + 0.5 * dV * t);
+	double t = time - travel->time[piece];
+	*dV = travel->acceleration[piece];
+	*V = travel->start_speed[piece] + *dV * t;
+	return travel->place[piece] + t * (travel->start_speed[piece] + 0.5 * *dV * t);
 }
 
 static void set_body(const rs_travel *travel, const rs_moved_body *body)
@@ -232,7 +232,7 @@ static int set_frames(rs_travel *travel, double s)
 
 int rs_travel_set(rs_travel *travel, double time)
 {
-	double s = travelled(travel, time);
+	double s = rs_travel_place(travel, time, &travel->V, &travel->dV);
 	int status = travel->track ? set_frames(travel, s) : RS_OK;
 	for (int k = 0; k < travel->wheelsets && !status; k++)
 		status = set_wheelset(travel, k, s + travel->x[travel->wheelset[k]]);

@@ -58,6 +58,9 @@ struct rs_travel {
 	double *w, *rail;         /* 3 and RS_TRACK_RAILS a wheelset */
 };
 
+/* Place (m) of the vehicle's centre at a time, speed and its rate. */
+double rs_travel_place(const rs_travel *travel, double time, double *V, double *dV);
+
 /* Everything at a time; status of the track. */
 int rs_travel_set(rs_travel *travel, double time);
 
