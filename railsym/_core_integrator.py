@@ -59,7 +59,7 @@ class Integrator:
                              f"{int(block.max()) + 1} bodies cannot be made: step and tolerance must be positive, rho between 0 and 1, "
                              "at most eight coordinates a body, each internal coordinate in one element")
         self._pointer = ffi.gc(made, lib.rs_integrator_free)
-        self._travel = self._callback = None
+        self._travel = self._callback = self.why = None
         self.channels = 0
 
     def start(self, time, q, u):
@@ -96,9 +96,12 @@ class Integrator:
         _check(lib.rs_integrator_channels(self._pointer, len(channels), record), "channels")
         self.channels = len(channels)
 
-    def set_controller(self, function, every, context=ffi.NULL):
-        """A C function (cffi pointer to rs_controller) called before every ``every``-th step; None takes it away."""
-        self._callback = function
+    def set_controller(self, function, every, context=ffi.NULL, why=None):
+        """A C function (cffi pointer to rs_controller) called before every ``every``-th step; None takes it away.
+
+        ``why`` () gives the exception that tells why it stopped a run, or None.
+        """
+        self._callback, self._context, self.why = function, context, why
         lib.rs_integrator_controller(self._pointer, ffi.NULL if function is None else function, context, every)
 
     def set_travel(self, travel):

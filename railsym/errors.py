@@ -32,3 +32,9 @@ class CoreError(RailsymError, RuntimeError):
 
 class SimulationError(RailsymError, ValueError):
     """A simulation that cannot be started as asked."""
+
+
+class ControllerError(SimulationError):
+    """A controller answered with something that it cannot mean, or stopped the run; ``run`` holds what was computed until then."""
+
+    run = None

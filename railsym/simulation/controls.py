@@ -28,6 +28,11 @@ class Controls:
         self._lines = sum(element.axis is None for element in self._parts.model.laws)
 
     @property
+    def simulation(self):
+        """The `Simulation` that is controlled."""
+        return self._run
+
+    @property
     def time(self):
         """s"""
         return self._run.time

@@ -10,7 +10,8 @@ from contextlib import nullcontext
 
 import numpy as np
 
-from railsym.errors import SimulationError
+from railsym._core_integrator import STOPPED
+from railsym.errors import ControllerError, SimulationError
 from railsym.results import ChannelWriter, Run
 from railsym.results.metadata import Ending, RunInfo
 from railsym.simulation.assembled import Assembled
@@ -108,6 +109,8 @@ class Simulation:
         self._waiting.append((times, samples[:sampled]))
         if status:
             self.ending = ending_of(self.parts, status)
+            if status == STOPPED and integrator.why is not None and (error := integrator.why()) is not None:
+                raise error
 
     def _keep(self):
         """Channels of the samples that wait; returns their times and values."""
@@ -130,6 +133,11 @@ class Simulation:
             A bar on the error stream.
         writer : ChannelWriter, optional
             Gets the samples as they come.
+
+        Raises
+        ------
+        ControllerError
+            A controller whose answer makes no sense, with the run until then.
         """
         total = self._check_duration(duration)
         first = self.parts.integrator.report.steps
@@ -151,6 +159,11 @@ class Simulation:
                     bar.update(count)
         except KeyboardInterrupt:
             self.ending = Ending("interrupted", time=self.time, distance=float(self.parts.speed.place(self.time)))
+        except ControllerError as error:
+            self.ending = Ending("interrupted", time=self.time, distance=float(self.parts.speed.place(self.time)), detail=str(error))
+            self._hand_over(writer)
+            error.run = self.result()
+            raise
         self._hand_over(writer)
         if self.ending.reason == "running":
             self.ending = Ending("completed", time=self.time, distance=float(self.parts.speed.place(self.time)))

@@ -15,7 +15,6 @@ _MODULE_OF = {
     "CompiledController": "compiled",
     "CompiledLaw": "compiled",
     "Controller": "controller",
-    "ControllerError": "errors",
     "FaultReport": "faults",
     "OUTPUTS": "faults",
     "SIGNALS": "signals",

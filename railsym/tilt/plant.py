@@ -7,7 +7,8 @@ import numpy as np
 
 from railsym._core import _check, _doubles, ffi, lib
 from railsym.tilt.drive import POWERS, TiltDrive
-from railsym.tilt.errors import ControllerError, TiltError
+from railsym.errors import ControllerError
+from railsym.tilt.errors import TiltError
 from railsym.tilt.sensors import KINDS, NAMES
 from railsym.tilt.signals import SIGNALS
 
@@ -124,6 +125,8 @@ class Plant:
             limit = self._unit.limit
             return ControllerError(f"controller {name}: it gave {command[0]:.4g} rad at t = {time:.6g} s; it must give the tilt angle in rad, one finite "
                                    f"number within +-{limit:.4g} rad ({np.degrees(limit):.3g} degrees)")
+        if answer == lib.RS_TILT_NO_NOISE:
+            return ControllerError("tilt unit: the run goes on without it; give simulation.run its controllers=[unit.controller] every time")
         if answer == lib.RS_OUT_OF_TRACK:
             return ControllerError(f"tilt unit: a sensor is beyond the end of the track at t = {time:.6g} s; lengthen the track or shorten the run")
         return ControllerError(f"controller {name}: it stopped the run at t = {time:.6g} s with status {answer}")

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from railsym.tilt.errors import ControllerError, TiltError
+from railsym.errors import ControllerError
+from railsym.tilt.errors import TiltError
 from railsym.tilt.faults import OUTPUTS, reports
 from railsym.tilt.sensors import NAMES, NoiseSource, SensorSet
 from railsym.tilt.signals import SIGNALS, Signals
