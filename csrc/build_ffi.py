@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Write the cffi binding: ``python build_ffi.py interface.h output.c``."""
+"""Write the cffi binding: ``python build_ffi.py output.c interface.h ...``."""
 
 import pathlib
 import sys
@@ -7,10 +7,11 @@ import sys
 import cffi
 
 
-def main(interface, output):
-    """Emit the API-mode binding of the declarations in ``interface``."""
+def main(output, *interfaces):
+    """Emit the API-mode binding of the declarations in ``interfaces``."""
     builder = cffi.FFI()
-    builder.cdef(pathlib.Path(interface).read_text(encoding="ascii"))
+    for interface in interfaces:
+        builder.cdef(pathlib.Path(interface).read_text(encoding="ascii"))
     builder.set_source("railsym._railsym", '#include "railsym.h"')
     builder.emit_c_code(str(output))
 

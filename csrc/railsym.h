@@ -120,5 +120,6 @@
 #define RAILSYM_H
 
 #include "interface.h"
+#include "tilt/tilt_interface.h"
 
 #endif

@@ -37,7 +37,7 @@ class TiltParameters:
     derivative_time, trim_limit, tracking : float
         s; rad that the PID may add to the demand; 1/s at which its integral follows what a limit leaves (anti-windup).
     reference_frequency, reference_damping : float
-        Hz, -: second-order model of how tilt follows its command.
+        Hz, -: second-order model of how tilt follows its command (fitted to pendolino_tilting up to 1.5 Hz: `railsym.tilt.fitted_plant`).
     estimator : str
         ``"accelerometer"``: low-passed lateral acceleration; ``"complementary"``: its slow part, the fast one from the gyroscope.
     lateral_cutoff, gyro_cutoff : float
@@ -55,7 +55,7 @@ class TiltParameters:
     leave, sensor_delay, slowest : float
         s; s, delay of the sensors themselves, taken off the start of a curve; m/s, below which curvature is not computed.
     hold, stale, confirm : float
-        s: a missing value is held, a repeated one believed, a disagreement watched so long.
+        s: a missing value is held, a repeated one believed (inf: always; sensors without noise repeat), a disagreement watched so long.
     disagreement, gyro_tolerance, database_tolerance : float
         m/s^2, between accelerometers; of both to the gyroscope; of the database to the estimate.
     washout : float
@@ -76,15 +76,15 @@ class TiltParameters:
     demand_rate: float = np.radians(5.0)
     return_rate: float = np.radians(2.0)
     kp: float = 0.5
-    ki: float = 1.0
+    ki: float = 2.0
     kd: float = 0.0
     derivative_time: float = 0.05
     trim_limit: float = np.radians(1.0)
     tracking: float = 2.0
-    reference_frequency: float = 1.0
-    reference_damping: float = 0.8
+    reference_frequency: float = 3.0
+    reference_damping: float = 0.9
     estimator: str = "accelerometer"
-    lateral_cutoff: float = 0.7
+    lateral_cutoff: float = 0.5
     gyro_cutoff: float = 2.0
     crossover: float = 1.0
     source: str = "own"
@@ -112,6 +112,8 @@ class TiltParameters:
     def __post_init__(self):
         for name in (*_POSITIVE, *_AT_LEAST_ZERO):
             value, low = getattr(self, name), name in _POSITIVE
+            if name == "stale" and value == np.inf:
+                continue
             if not isinstance(value, (int, float, np.floating)) or not np.isfinite(value) or value < 0.0 or (low and value == 0.0):
                 raise TiltError(f"{name} = {value!r}: a finite number {'above 0' if low else 'of at least 0'} is needed (SI units)")
         for name, known in (("estimator", ESTIMATORS), ("source", SOURCES)):
@@ -154,7 +156,7 @@ class TiltParameters:
 
     def samples(self, seconds):
         """Samples in a time, at least one."""
-        return max(1, round(seconds * self.rate))
+        return max(1, round(min(seconds * self.rate, 1e9)))
 
     def biquad(self, cutoff):
         """b0 b1 b2 a1 a2 of the Butterworth low-pass of second order (SciPy, bilinear)."""
