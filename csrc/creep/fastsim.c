@@ -22,7 +22,7 @@
 
 #include "../creep.h"
 
-enum { MOST = 5, FEW = 2 }; /* strips side by side without and with slopes: as many as hide the latency and fit the registers */
+enum { PAIRS = 2, MOST = 2 * PAIRS }; /* strips side by side without slopes: as many as hide the latency and fit the registers */
 
 #if defined(__clang__)
 #define UNROLL _Pragma("unroll")
