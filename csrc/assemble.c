@@ -48,7 +48,7 @@ static void evaluate(rs_model *model, const double *q, const double *u, const do
 			double *in = group->in + (size_t)block * (size_t)(info->inputs * lanes);
 			const int *index = group->index + block * lanes * info->coordinates;
 			rs_group_gather(model, group, info, block);
-			rs_kernel_call(kernel, in, group->laws + block * lanes, seed, rows, S ? entries : NULL);
+			rs_kernel_call(kernel, group->count - block * lanes, in, group->laws + block * lanes, seed, rows, S ? entries : NULL);
 			if (r)
 				add_rows(info, index, rows, r);
 			if (S)

@@ -8,8 +8,8 @@
 #define RS_MAX_COORDINATES 16
 #define RS_MAX_ENTRIES 192
 
-/* Lanes and outputs by address: a lane is rs_kernel_lanes() doubles, aligned to its size. */
-void rs_kernel_call(int kernel, const void *in, const rs_law *const *laws, const double *seed,
-                    void *r, void *S);
+/* Inputs and outputs lane by lane: a lane is rs_kernel_lanes() doubles, aligned to its size. Of them the first `used` are computed, others
+ * may be. S may be NULL. */
+void rs_kernel_call(int kernel, int used, const double *in, const rs_law *const *laws, const double *seed, double *r, double *S);
 
 #endif

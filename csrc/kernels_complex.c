@@ -19,10 +19,10 @@
 int rs_kernel_complex(int kernel, const double *in, const rs_law *law, const double *seed,
                       double *r, double *S)
 {
-#define ENTRY(name, inputs, coordinates, entries, has_law) RS_NAME(name),
-	static RS_NAME(kernel_type) *const table[] = {RS_KERNELS(ENTRY)};
+#define ENTRY(name, inputs, coordinates, entries, has_law) RS_NAME(name##_body),
+	static rs_kernel_function *const table[] = {RS_KERNELS(ENTRY)};
 	if (kernel < 0 || kernel >= rs_kernel_count())
 		return RS_BAD_INDEX;
-	table[kernel]((const rs_lane *)in, &law, seed, (rs_lane *)r, (rs_lane *)S);
+	table[kernel](in, &law, seed, r, S);
 	return RS_OK;
 }

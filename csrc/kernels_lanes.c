@@ -9,7 +9,8 @@
 
 #include "generated/kernels.h"
 
-#define DECLARE(name, inputs, coordinates, entries, has_law) RS_NAME(kernel_type) RS_NAME(name);
+#define DECLARE(name, inputs, coordinates, entries, has_law) \
+	rs_kernel_function rs_##name##_lanes, rs_##name##_rows_lanes, rs_##name##_half, rs_##name##_rows_half;
 RS_KERNELS(DECLARE)
 
 #define DESCRIBE(name, inputs, coordinates, entries, has_law) \
@@ -38,13 +39,41 @@ int rs_kernel_lanes(void)
 	return RS_LANES;
 }
 
-void rs_kernel_call(int kernel, const void *in, const rs_law *const *laws, const double *seed,
-                    void *r, void *S)
+#define WHOLE(name, inputs, coordinates, entries, has_law) {rs_##name##_rows_lanes, rs_##name##_lanes},
+static rs_kernel_function *const whole[][2] = {RS_KERNELS(WHOLE)};
+
+#if defined(__GNUC__)
+#define HALF(name, inputs, coordinates, entries, has_law) {rs_##name##_rows_half, rs_##name##_half},
+static rs_kernel_function *const half[][2] = {RS_KERNELS(HALF)};
+
+/* 1 where the processor takes all lanes at once. */
+static int takes_whole(void)
 {
-#define ENTRY(name, inputs, coordinates, entries, has_law) RS_NAME(name),
-	static RS_NAME(kernel_type) *const table[] = {RS_KERNELS(ENTRY)};
-	table[kernel](in, laws, seed, r, S);
+#if RS_LEVELS
+	return __builtin_cpu_supports("x86-64-v4");
+#else
+	return 1;
+#endif
 }
+
+void rs_kernel_call(int kernel, int used, const double *in, const rs_law *const *laws, const double *seed, double *r, double *S)
+{
+	enum { HALF_LANES = RS_LANES / 2 };
+	if (used > HALF_LANES && takes_whole()) {
+		whole[kernel][S != NULL](in, laws, seed, r, S);
+		return;
+	}
+	half[kernel][S != NULL](in, laws, seed, r, S);
+	if (used > HALF_LANES)
+		half[kernel][S != NULL](in + HALF_LANES, laws + HALF_LANES, seed, r + HALF_LANES, S ? S + HALF_LANES : NULL);
+}
+#else
+void rs_kernel_call(int kernel, int used, const double *in, const rs_law *const *laws, const double *seed, double *r, double *S)
+{
+	(void)used;
+	whole[kernel][S != NULL](in, laws, seed, r, S);
+}
+#endif
 
 int rs_kernel_real(int kernel, const double *in, const rs_law *const *laws, const double *seed,
                    double *r, double *S)
@@ -57,7 +86,7 @@ int rs_kernel_real(int kernel, const double *in, const rs_law *const *laws, cons
 	if (!lanes_in)
 		return RS_NO_MEMORY;
 	memcpy(lanes_in, in, info->inputs * sizeof(rs_lane));
-	rs_kernel_call(kernel, lanes_in, laws, seed, lanes_r, S ? lanes_S : NULL);
+	rs_kernel_call(kernel, RS_LANES, (const double *)lanes_in, laws, seed, (double *)lanes_r, S ? (double *)lanes_S : NULL);
 	memcpy(r, lanes_r, info->coordinates * sizeof(rs_lane));
 	if (S)
 		memcpy(S, lanes_S, info->entries * sizeof(rs_lane));

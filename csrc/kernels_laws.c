@@ -3,8 +3,8 @@
 #include "lanes.h"
 #include "laws.h"
 
-RS_NAME(kernel_type) RS_NAME(axis);
-RS_NAME(kernel_type) RS_NAME(line);
-
 #include "generated/axis.h"
 #include "generated/line.h"
+
+RS_KERNEL(axis)
+RS_KERNEL(line)

@@ -154,7 +154,7 @@ static void RS_NAME(law)(const rs_law *const *laws, const rs_lane *e, const rs_l
                          const rs_lane *w, rs_lane *f, rs_lane *g, rs_lane *f_e, rs_lane *f_v,
                          rs_lane *f_s, rs_lane *f_w, rs_lane *g_e, rs_lane *g_v, rs_lane *g_s, rs_lane *g_w)
 {
-	for (int i = 0; i < RS_LANES; i++) {
+	for (int i = 0; i < RS_WIDTH; i++) {
 #define AT(x) (((const rs_scalar *)(x))[i])
 #define TO(x) (((rs_scalar *)(x))[i])
 		RS_NAME(law_value) out = {0};

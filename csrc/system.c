@@ -97,7 +97,7 @@ static void evaluate_group(rs_system *system, int kernel, const double *seed, in
 		double *rows = scatter->values + block * coordinates;
 		double *in = group->in + (size_t)block * (size_t)(info->inputs * LANES);
 		rs_group_gather(system->model, group, info, block);
-		rs_kernel_call(kernel, in, group->laws + block * LANES, seed, rows, seed ? entries : NULL);
+		rs_kernel_call(kernel, group->count - block * LANES, in, group->laws + block * LANES, seed, rows, seed ? entries : NULL);
 		if (system->capturing)
 			capture(system, kernel, block, rows, next);
 		if (scatter->internal >= 0 && scatter->inner[block]) {

@@ -135,7 +135,7 @@ def _input_loads(kernel, lines, extra):
     used = _free(extra)
     for line in lines:
         used |= set(line.arguments) if isinstance(line, LawCall) else line[1].free_symbols
-    return [f"const rs_lane {i.symbol} = in[{k}];" for k, i in enumerate(kernel.tape.inputs)
+    return [f"const rs_lane {i.symbol} = RS_IN({k});" for k, i in enumerate(kernel.tape.inputs)
             if i.symbol in used]
 
 
@@ -156,15 +156,14 @@ def kernel_file(kernel, digest):
     statements = [
         *(["(void)laws;"] if not any(isinstance(line, LawCall) for line in residual) else []),
         *loads, *_body(residual),
-        *(f"residual[{k}] = {_value(row)};" for k, row in enumerate(kernel.rows)),
+        *(f"RS_OUT(residual, {k}) = {_value(row)};" for k, row in enumerate(kernel.rows)),
         "if (!pencil)", "\treturn;",
         *late, *late_seeds, *_body(tangent),
-        *(f"pencil[{k}] = {_value(value)};" for k, (_, value) in enumerate(entries)),
+        *(f"RS_OUT(pencil, {k}) = {_value(value)};" for k, (_, value) in enumerate(entries)),
     ]
     text = [
         *banner(kernel, digest, residual, tangent),
-        f"RS_KERNEL void RS_NAME({name})(const rs_lane *restrict in, const rs_law *const *laws,",
-        "                                const double *seed, rs_lane *restrict residual, rs_lane *restrict pencil)",
+        f"RS_BODY({name})",
         "{", *("\t" + statement for statement in statements),
         "}",
     ]
