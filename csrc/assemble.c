@@ -38,8 +38,8 @@ static void evaluate(rs_model *model, const double *q, const double *u, const do
 	int lanes = rs_kernel_lanes();
 	size_t n = (size_t)model->coordinates;
 	memcpy(model->state, q, n * sizeof *q);
-	memcpy(model->state + n, u, n * sizeof *u);
-	memcpy(model->state + 2 * n, a, n * sizeof *a);
+	memcpy(model->state + model->stride, u, n * sizeof *u);
+	memcpy(model->state + 2 * model->stride, a, n * sizeof *a);
 	rs_model_trigonometry(model);
 	for (int kernel = 0; kernel < rs_kernel_count(); kernel++) {
 		const rs_kernel_info *info = rs_kernel_describe(kernel);

@@ -51,7 +51,7 @@ static void find_block_runs(rs_group *group, const rs_kernel_info *info, int blo
 	group->first_run[block + 1] = *runs;
 }
 
-int rs_group_find_runs(rs_group *group, const rs_kernel_info *info, int coordinates)
+int rs_group_find_runs(rs_group *group, const rs_kernel_info *info, int stride)
 {
 	int runs = 0;
 	group->run = malloc(5 * (size_t)group->blocks * (size_t)info->coordinates * sizeof *group->run);
@@ -59,7 +59,7 @@ int rs_group_find_runs(rs_group *group, const rs_kernel_info *info, int coordina
 	if (!group->run || !group->first_run)
 		return RS_NO_MEMORY;
 	for (int block = 0; block < group->blocks; block++)
-		find_block_runs(group, info, block, coordinates, &runs);
+		find_block_runs(group, info, block, stride, &runs);
 	return RS_OK;
 }
 
@@ -90,37 +90,49 @@ static RS_ALWAYS_INLINE void transpose(const double *state, const int *source, f
 }
 
 /* A shorter run reads what follows it; the first input is stored last, over what went to its slot. */
-static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, double *in)
+static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, int half, double *in)
 {
 	double *to[RS_RUN];
 	four left[RS_RUN], right[RS_RUN];
 	for (int k = 0; k < RS_RUN; k++)
 		to[k] = in + run->slot[k] * RS_LANES;
 	transpose(state, run->source, left);
-	transpose(state, run->source + 4, right);
-	for (int k = RS_RUN - 1; k >= 0; k--) {
-		*(four *)to[k] = left[k];
-		*(four *)(to[k] + 4) = right[k];
+	if (half) {
+		for (int k = RS_RUN - 1; k >= 0; k--)
+			*(four *)to[k] = left[k];
+		return;
 	}
+	transpose(state, run->source + 4, right);
+	for (int k = RS_RUN - 1; k >= 0; k--)
+		*(rs_lane *)to[k] = __builtin_shufflevector(left[k], right[k], 0, 1, 2, 3, 4, 5, 6, 7); /* one store: kernels load all of it */
 }
 #else
-static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, double *in)
+static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, int half, double *in)
 {
+	(void)half;
 	for (int k = 0; k < run->length; k++)
 		for (int lane = 0; lane < RS_LANES; lane++)
 			in[run->slot[k] * RS_LANES + lane] = state[run->source[lane] + k];
 }
 #endif
 
-RS_CLONES
-void rs_group_gather(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
+static RS_ALWAYS_INLINE void copy_runs(const double *restrict state, const rs_run *restrict run, const rs_run *end, int half, double *restrict in)
 {
-	double *restrict in = group->in + (size_t)block * (size_t)(info->inputs * RS_LANES);
-	const double *restrict state = model->state;
-	const rs_run *restrict run = group->run + group->first_run[block], *end = group->run + group->first_run[block + 1];
 	for (; run < end; run++)
 		if (run->length == 1)
 			copy_one(state, run, in);
 		else
-			copy_run(state, run, in);
+			copy_run(state, run, half, in);
+}
+
+/* Of a block with at most half its lanes filled the rest stays as it is. */
+RS_CLONES
+void rs_group_gather(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
+{
+	double *restrict in = group->in + (size_t)block * (size_t)(info->inputs * RS_LANES);
+	const rs_run *run = group->run + group->first_run[block], *end = group->run + group->first_run[block + 1];
+	if (2 * (group->count - block * RS_LANES) <= RS_LANES)
+		copy_runs(model->state, run, end, 1, in);
+	else
+		copy_runs(model->state, run, end, 0, in);
 }

@@ -7,6 +7,7 @@
  * linearly; one that contracts less than fourfold gets new factors, and a step that does not
  * converge with factors of its own state has failed.
  */
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -42,12 +43,38 @@ typedef struct {
 	double seed[3];
 } scheme;
 
+/* Largest size among numbers, infinite where any is not a number. Sizes compare as their bits do, and those of what is no number are
+ * the largest. */
+static RS_ALWAYS_INLINE double largest_of(const double *x, int count)
+{
+	enum { WIDTH = 8 };
+	long long most[WIDTH] = {0}, bits[WIDTH], all = 0;
+	double size;
+	int k = 0;
+	for (; k + WIDTH <= count; k += WIDTH) {
+		memcpy(bits, x + k, sizeof bits);
+		for (int i = 0; i < WIDTH; i++) {
+			bits[i] &= LLONG_MAX;
+			most[i] = bits[i] > most[i] ? bits[i] : most[i];
+		}
+	}
+	for (int i = 0; i < WIDTH; i++)
+		all = most[i] > all ? most[i] : all;
+	for (; k < count; k++) {
+		memcpy(bits, x + k, sizeof *bits);
+		bits[0] &= LLONG_MAX;
+		all = bits[0] > all ? bits[0] : all;
+	}
+	memcpy(&size, &all, sizeof size);
+	return isfinite(size) ? size : INFINITY;
+}
+
 /* y'_n+1 is extrapolated along the last step; everything else follows. */
 RS_CLONES
 static void predict(rs_integrator *it, double h)
 {
 	int n = it->n, second = it->second;
-	double *restrict q = it->system->model->state, *restrict u = q + n, *restrict a = u + n;
+	double *restrict q = it->system->model->state, *restrict u = q + it->system->model->stride, *restrict a = u + it->system->model->stride;
 	const double *restrict qn = it->q, *restrict un = it->u, *restrict an = it->a, *restrict vn = it->v, *restrict before = it->before;
 	double along = it->before_step > 0.0 ? h / it->before_step : 0.0;
 	double am = it->am, af = it->af, per_am = 1.0 / am, old = h * (1.0 - it->gamma), new = h * it->gamma;
@@ -72,7 +99,7 @@ RS_CLONES
 static void change(rs_integrator *it, const scheme *with)
 {
 	int n = it->n, second = it->second;
-	double *restrict q = it->system->model->state, *restrict u = q + n, *restrict a = u + n;
+	double *restrict q = it->system->model->state, *restrict u = q + it->system->model->stride, *restrict a = u + it->system->model->stride;
 	const double *restrict d = it->d;
 	double cu = with->seed[1], ca = with->seed[2];
 	RS_APART
@@ -89,9 +116,9 @@ RS_CLONES
 static void accept(rs_integrator *it, double h)
 {
 	int n = it->n, second = it->second;
-	const double *restrict q = it->system->model->state, *restrict u = q + n, *restrict a = u + n;
+	const double *restrict q = it->system->model->state, *restrict u = q + it->system->model->stride, *restrict a = u + it->system->model->stride;
 	double *restrict qn = it->q, *restrict un = it->u, *restrict an = it->a, *restrict vn = it->v, *restrict before = it->before;
-	double to_end = 1.0 / it->af, to_new = 1.0 / it->am, largest[8] = {0.0};
+	double to_end = 1.0 / it->af, to_new = 1.0 / it->am;
 	RS_APART
 	for (int k = 0; k < second; k++) {
 		before[k] = an[k];
@@ -106,14 +133,7 @@ static void accept(rs_integrator *it, double h)
 		qn[k] += to_end * (q[k] - qn[k]);
 		un[k] += to_new * (u[k] - un[k]);
 	}
-	for (int k = 0; k + 8 <= second; k += 8)
-		for (int i = 0; i < 8; i++)
-			largest[i] = fabs(an[k + i]) > largest[i] ? fabs(an[k + i]) : largest[i];
-	it->largest = 0.0;
-	for (int i = 0; i < 8; i++)
-		it->largest = largest[i] > it->largest ? largest[i] : it->largest;
-	for (int k = second / 8 * 8; k < second; k++)
-		it->largest = fabs(an[k]) > it->largest ? fabs(an[k]) : it->largest;
+	it->largest = largest_of(an, second);
 	it->before_step = h;
 }
 
@@ -122,26 +142,8 @@ static void accept(rs_integrator *it, double h)
 RS_CLONES
 static double size_of(const rs_integrator *it)
 {
-	double largest[8] = {0.0}, sum[8] = {0.0}, all = 0.0, most = 0.0;
-	int n = it->n, second = it->second, k = 0;
-	const double *d = it->d;
-	for (; k + 8 <= second; k += 8)
-		for (int i = 0; i < 8; i++) {
-			double size = fabs(d[k + i]);
-			largest[i] = size > largest[i] ? size : largest[i];
-			sum[i] += size;
-		}
-	for (; k < second; k++) {
-		most = fabs(d[k]) > most ? fabs(d[k]) : most;
-		all += fabs(d[k]);
-	}
-	for (; k < n; k++)
-		all += fabs(d[k]);
-	for (int i = 0; i < 8; i++) {
-		most = largest[i] > most ? largest[i] : most;
-		all += sum[i];
-	}
-	return isfinite(all) ? most : INFINITY;
+	double bodies = largest_of(it->d, it->second), rest = largest_of(it->d + it->second, it->n - it->second);
+	return isfinite(rest) ? bodies : INFINITY;
 }
 
 static int worst_of(const rs_integrator *it)

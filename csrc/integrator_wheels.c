@@ -61,7 +61,7 @@ int rs_integrator_evaluate(rs_integrator *it, const double *seed, int inner, int
 	const rs_travel *travel = it->travel;
 	const double *q = system->model->state, *rail = travel->track ? travel->rail : NULL;
 	int with_blocks = seed && (seed[0] != 0.0 || seed[1] != 0.0);
-	int status = rs_wheel_rail_rows(it->wheels, q, q + it->n, travel->V, travel->w, rail, seed, it->wheel_rows,
+	int status = rs_wheel_rail_rows(it->wheels, q, q + system->model->stride, travel->V, travel->w, rail, seed, it->wheel_rows,
 	                                with_blocks ? it->wheel_blocks : NULL);
 	if (status)
 		return status;

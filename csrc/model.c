@@ -14,13 +14,16 @@ rs_model *rs_model_create(int coordinates, const unsigned char *is_angle)
 	model->groups = calloc((size_t)rs_kernel_count(), sizeof *model->groups);
 	model->is_angle = malloc((size_t)coordinates);
 	model->angle = malloc((size_t)coordinates * sizeof(int));
-	model->state = calloc(5 * (size_t)coordinates + 2 * RS_SPARE, sizeof(double));
+	model->stride = (coordinates + 7) / 8 * 8;
+	size_t numbers = 5 * (size_t)model->stride + 2 * RS_SPARE;
+	model->state = aligned_alloc(64, (numbers + 7) / 8 * 8 * sizeof(double));
 	if (!model->groups || !model->is_angle || !model->angle || !model->state) {
 		rs_model_free(model);
 		return NULL;
 	}
+	memset(model->state, 0, numbers * sizeof(double));
 	for (int k = 0; k < RS_SPARE; k++)
-		model->state[5 * coordinates + RS_SPARE + k] = 1.0;
+		model->state[5 * model->stride + RS_SPARE + k] = 1.0;
 	memcpy(model->is_angle, is_angle, (size_t)coordinates);
 	for (int k = 0; k < coordinates; k++)
 		if (is_angle[k])
@@ -102,7 +105,7 @@ int rs_model_add(rs_model *model, int kernel, int count, const double *in, const
 	int status = allocate_group(group, info, count);
 	if (status == RS_OK) {
 		fill_group(group, info, in, index, laws);
-		status = rs_group_find_runs(group, info, model->coordinates);
+		status = rs_group_find_runs(group, info, model->stride);
 	}
 	if (status != RS_OK) {
 		free_group(group);

@@ -24,11 +24,12 @@ typedef struct {
 
 struct rs_model {
 	int coordinates;          /* n */
+	int stride;               /* n rounded up, so that the parts of the state begin on cache lines */
 	rs_group *groups;         /* one a kernel */
 	unsigned char *is_angle;  /* n */
 	int angles;
 	int *angle;               /* coordinates that are angles */
-	double *state;            /* q u a sin cos: n each; then zeros and ones, for coordinates that do not exist */
+	double *state;            /* q u a sin cos: stride each; then zeros and ones, for coordinates that do not exist */
 };
 
 /* Sine and cosine of the angles among q into the state (trigonometry.c). */

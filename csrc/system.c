@@ -115,9 +115,10 @@ static void evaluate_group(rs_system *system, int kernel, const double *seed, in
 /* Holds and applied forces. */
 static void add_own(rs_system *system, const double *seed)
 {
-	const double *q = system->model->state, *u = q + system->n;
+	const double *q = system->model->state, *u = q + system->model->stride;
 	for (int k = 0; k < system->second; k++)
-		system->r[system->place[k]] -= system->force[k];
+		if (system->force[k] != 0.0)
+			system->r[system->place[k]] -= system->force[k];
 	for (int k = 0; k < system->holds; k++) {
 		const rs_hold *hold = system->hold + k;
 		system->r[hold->place] += hold->stiffness * q[hold->coordinate] + hold->damping * u[hold->coordinate]

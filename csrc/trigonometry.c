@@ -11,7 +11,7 @@ enum { WIDTH = 8 };
 RS_CLONES
 void rs_model_trigonometry(rs_model *model)
 {
-	int n = model->coordinates;
+	int n = model->stride;
 	double *q = model->state, *sines = q + 3 * n, *cosines = q + 4 * n;
 	for (int first = 0; first < model->angles; first += WIDTH) {
 		double x[WIDTH] = {0.0}, sine[WIDTH], cosine[WIDTH];
