@@ -42,20 +42,16 @@ static RS_ALWAYS_INLINE void rs_sine_cosine(double x, double *sine, double *cosi
 	*cosine = cos(x);
 }
 
-static RS_ALWAYS_INLINE double rs_arcsine(double x)
+static RS_ALWAYS_INLINE double rs_arcsine_series(double x)
 {
 	double y = x * x;
-	if (!(fabs(x) <= RS_SMALL_RATIO))
-		return asin(x);
 	return x + x * y * (1.0 / 6.0 + y * (3.0 / 40.0 + y * (15.0 / 336.0 + y * (105.0 / 3456.0 + y * (945.0 / 42240.0)))));
 }
 
-/* Angle of (x, y), x > 0. */
-static RS_ALWAYS_INLINE double rs_arctangent(double y, double x)
+/* Angle of (1, t). */
+static RS_ALWAYS_INLINE double rs_arctangent_series(double t)
 {
-	double t = y / x, s = t * t;
-	if (!(x > 0.0 && fabs(t) <= RS_SMALL_RATIO))
-		return atan2(y, x);
+	double s = t * t;
 	return t + t * s * (-1.0 / 3.0 + s * (1.0 / 5.0 + s * (-1.0 / 7.0 + s * (1.0 / 9.0 + s * (-1.0 / 11.0)))));
 }
 

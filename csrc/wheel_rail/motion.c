@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Place of a wheel on its rail, and its motion against it.
+/* Place of a wheel on its rail, and its motion against it, of eight wheels at once.
  *
  * The rail's head is a prism along e1 ~ (1, y', z') that has the rail's deviation (y, z) at the wheelset, turned about e1
  * by the cross level, sin rho = (z right - z left)/spacing:
@@ -24,173 +24,159 @@
 
 enum { X, Y, Z, YAW, ROLL, SPIN };
 
-static const double UP_TO_DOWN[3] = {0.0, 0.0, 1.0};
-
+/* What is given of eight wheels; rail: deviation of the own rail, y and z, and its slopes; cross level and its slope. */
 typedef struct {
-	double e1[3];
-	double D[3];          /* from the rail's head to the wheelset's centre */
-	double turn_rate;     /* of the rail about e1, rad/s */
-} rail_head;
+	rs_lane q[RS_COLUMNS], u[RS_COLUMNS], w[3], offset[3], spacing, raised;
+	rs_lane own[2], slope[2], level, level_slope;
+} given;
 
-RS_INLINE void axle_axes(const double *q, rs_axle_state *axle)
+/* Lanes that are not used repeat the last wheel. */
+RS_INLINE void gather(const rs_wheel_rail *wr, const double *q, const double *u, const double *w, const double *rail, int first, given *to,
+                      rs_wheels *wheels)
 {
-	double sy, cy, sr, cr;
-	rs_sine_cosine(q[YAW], &sy, &cy);
-	rs_sine_cosine(q[ROLL], &sr, &cr);
-	double forward[3] = {cy, sy, 0.0}, along[3] = {-sy * cr, cy * cr, sr};
-	memcpy(axle->forward, forward, sizeof forward);
-	memcpy(axle->axle, along, sizeof along);
+	RS_EACH(l) {
+		int number = first + l < 2 * wr->wheelsets ? first + l : 2 * wr->wheelsets - 1, k = number / 2, right = number % 2;
+		const rs_wheelset *set = &wr->wheelset[k];
+		const double *lie = rail ? rail + 8 * k : (const double[8]){0.0}, *own = lie + 2 * right;
+		RS_AT(wheels->side, l) = right ? 1.0 : -1.0;
+		for (int i = 0; i < RS_COLUMNS; i++) {
+			RS_AT(to->q[i], l) = q[set->first + i];
+			RS_AT(to->u[i], l) = u[set->first + i];
+		}
+		EACH_AXIS(i) {
+			RS_AT(to->w[i], l) = w[3 * k + i];
+			RS_AT(to->offset[i], l) = set->offset[i];
+		}
+		RS_AT(to->spacing, l) = set->spacing;
+		RS_AT(to->raised, l) = set->wheel[right].r0 + set->wheel[right].sink;
+		for (int i = 0; i < 2; i++) {
+			RS_AT(to->own[i], l) = own[i];
+			RS_AT(to->slope[i], l) = own[4 + i];
+		}
+		RS_AT(to->level, l) = lie[3] - lie[1];
+		RS_AT(to->level_slope, l) = lie[7] - lie[5];
+	}
 }
 
-/* Velocities that both wheels share; close and turn without the rail's part. */
-RS_INLINE void axle_velocities(const rs_wheelset *set, const double *q, const double *u, double V, const double *w,
-                            const rs_axle_state *axle, rs_motion *m)
+/* Functions by their series, and by the C library where an argument is large. */
+RS_INLINE void sine_and_cosine(const rs_lane *x, rs_lane *sine, rs_lane *cosine)
 {
-	double place[3] = {set->offset[0] + q[X], set->offset[1] + q[Y], set->offset[2] + q[Z]};
-	CROSS(m->v, w, place);
+	RS_EACH(l)
+		rs_sine_cosine_series(RS_OF(*x, l), &RS_AT(*sine, l), &RS_AT(*cosine, l));
+	RS_EACH(l)
+		if (fabs(RS_OF(*x, l)) > RS_SMALL_ANGLE)
+			rs_sine_cosine(RS_OF(*x, l), &RS_AT(*sine, l), &RS_AT(*cosine, l));
+}
+
+RS_INLINE void arcsine(const rs_lane *x, rs_lane *angle)
+{
+	RS_EACH(l)
+		RS_AT(*angle, l) = rs_arcsine_series(RS_OF(*x, l));
+	RS_EACH(l)
+		if (fabs(RS_OF(*x, l)) > RS_SMALL_RATIO)
+			RS_AT(*angle, l) = asin(RS_OF(*x, l));
+}
+
+/* Angle of (x, y). */
+RS_INLINE void arctangent(const rs_lane *y, const rs_lane *x, rs_lane *angle)
+{
+	rs_lane ratio = *y / *x;
+	RS_EACH(l)
+		RS_AT(*angle, l) = rs_arctangent_series(RS_OF(ratio, l));
+	RS_EACH(l)
+		if (RS_OF(*x, l) <= 0.0 || fabs(RS_OF(ratio, l)) > RS_SMALL_RATIO)
+			RS_AT(*angle, l) = atan2(RS_OF(*y, l), RS_OF(*x, l));
+}
+
+/* Velocities of the axle; close and turn without the rail's part. */
+RS_INLINE void axle_motion(const given *x, double V, rs_wheels *wheels)
+{
+	rs_motion_lanes *m = &wheels->at;
+	rs_lane sy, cy, sr, cr, place[3] = {x->offset[0] + x->q[X], x->offset[1] + x->q[Y], x->offset[2] + x->q[Z]};
+	sine_and_cosine(&x->q[YAW], &sy, &cy);
+	sine_and_cosine(&x->q[ROLL], &sr, &cr);
+	wheels->forward[0] = cy;
+	wheels->forward[1] = sy;
+	wheels->forward[2] = RS_ZERO;
+	m->a[0] = -sy * cr;
+	m->a[1] = cy * cr;
+	m->a[2] = sr;
+	CROSS(m->v, x->w, place);
 	m->v[0] += V;
 	EACH_AXIS(i) {
-		m->v[i] += u[i];
-		m->turn[i] = u[YAW] * UP_TO_DOWN[i] + u[ROLL] * axle->forward[i];
-		m->omega[i] = w[i] + m->turn[i] + u[SPIN] * axle->axle[i];
-		m->a[i] = axle->axle[i];
+		m->v[i] += x->u[i];
+		m->turn[i] = x->u[ROLL] * wheels->forward[i] + (i == 2 ? x->u[YAW] : RS_ZERO);
+		m->omega[i] = x->w[i] + m->turn[i] + x->u[SPIN] * m->a[i];
 	}
-	m->close[0] = 0.0;
-	m->close[1] = u[Y];
-	m->close[2] = u[Z];
+	m->close[0] = RS_ZERO;
+	m->close[1] = x->u[Y];
+	m->close[2] = x->u[Z];
 }
 
-/* Tangents of axle_axes and axle_velocities. */
-RS_INLINE void axle_tangents(const double *u, const double *w, const double *seed, rs_axle_state *axle, rs_motion *to)
+RS_INLINE void rail_axes(const given *x, double V, rs_wheels *wheels)
 {
-	double cq = seed[0], cu = seed[1], yawed[3], turned[3], rolled[3];
-	memset(to, 0, RS_COLUMNS * sizeof *to);
-	memset(axle->forward_to, 0, sizeof axle->forward_to);
-	memset(axle->axle_to, 0, sizeof axle->axle_to);
-	for (int k = 0; k < 3; k++) {
-		double unit[3] = {k == 0, k == 1, k == 2};
-		CROSS(to[k].v, w, unit);
-		EACH_AXIS(i)
-			to[k].v[i] = cq * to[k].v[i] + cu * unit[i];
-		to[k].close[k] = k ? cu : 0.0;
-	}
-	CROSS(yawed, UP_TO_DOWN, axle->forward);
-	CROSS(turned, UP_TO_DOWN, axle->axle);
-	CROSS(rolled, axle->forward, axle->axle);
+	rs_lane flat = 1.0 + x->slope[0] * x->slope[0], steep = flat + x->slope[1] * x->slope[1], level, length, k[3];
+	rs_lane sine = x->level / x->spacing, square = 1.0 - sine * sine, cosine;
+	RS_SQRT(level, flat);
+	RS_SQRT(length, steep);
+	RS_SQRT(cosine, square);
+	rs_lane per_level = 1.0 / level, per_length = 1.0 / length, h[3] = {-x->slope[0] * per_level, per_level, RS_ZERO};
+	wheels->e1[0] = per_length;
+	wheels->e1[1] = x->slope[0] * per_length;
+	wheels->e1[2] = x->slope[1] * per_length;
+	CROSS(k, wheels->e1, h);
 	EACH_AXIS(i) {
-		axle->forward_to[YAW][i] = cq * yawed[i];
-		axle->axle_to[YAW][i] = to[YAW].a[i] = cq * turned[i];
-		axle->axle_to[ROLL][i] = to[ROLL].a[i] = cq * rolled[i];
-		to[YAW].turn[i] = cu * UP_TO_DOWN[i] + cq * u[ROLL] * yawed[i];
-		to[ROLL].turn[i] = cu * axle->forward[i];
-		to[YAW].omega[i] = to[YAW].turn[i] + cq * u[SPIN] * turned[i];
-		to[ROLL].omega[i] = to[ROLL].turn[i] + cq * u[SPIN] * rolled[i];
-		to[SPIN].omega[i] = cu * axle->axle[i];
+		wheels->e2[i] = cosine * h[i] + sine * k[i];
+		wheels->e3[i] = cosine * k[i] - sine * h[i];
 	}
+	wheels->turn_rate = V * x->level_slope / (x->spacing * cosine);
+	wheels->D[0] = RS_ZERO;
+	wheels->D[1] = x->offset[1] + x->q[Y] - 0.5 * x->spacing * wheels->side - x->own[0];
+	wheels->D[2] = x->offset[2] + x->q[Z] - x->own[1];
 }
 
-RS_INLINE void rail_axes(const rs_wheelset *set, const double *q, double V, const double *rail, rs_wheel_state *wheel,
-                      rail_head *head)
+RS_INLINE void place_on_rail(const given *x, rs_wheels *wheels)
 {
-	const double *own = rail + (wheel->side > 0.0 ? 2 : 0), *slope = own + 4;
-	double level = sqrt(1.0 + slope[0] * slope[0]), length = sqrt(level * level + slope[1] * slope[1]);
-	double h[3] = {-slope[0] / level, 1.0 / level, 0.0}, k[3], spacing = set->spacing;
-	double sine = (rail[3] - rail[1]) / spacing, cosine = sqrt(1.0 - sine * sine);
-	head->e1[0] = 1.0 / length;
-	head->e1[1] = slope[0] / length;
-	head->e1[2] = slope[1] / length;
-	CROSS(k, head->e1, h);
-	EACH_AXIS(i) {
-		wheel->e2[i] = cosine * h[i] + sine * k[i];
-		wheel->e3[i] = cosine * k[i] - sine * h[i];
-	}
-	head->turn_rate = V * (rail[7] - rail[5]) / (spacing * cosine);
-	head->D[0] = 0.0;
-	head->D[1] = set->offset[1] + q[Y] - 0.5 * spacing * wheel->side - own[0];
-	head->D[2] = set->offset[2] + q[Z] - own[1];
-}
-
-RS_INLINE void place_on_rail(const rs_wheelset *set, const rail_head *head, rs_wheel_state *wheel)
-{
-	const rs_wheel *given = &set->wheel[wheel->side > 0.0];
-	const double *axle = wheel->at.a;
-	wheel->place[0] = wheel->side * DOT(wheel->e2, head->D) + 0.5 * set->spacing;
-	wheel->place[1] = wheel->side * rs_arcsine(DOT(axle, wheel->e3));
-	wheel->place[2] = DOT(wheel->e3, head->D) + given->r0 + given->sink;
-	wheel->place[3] = wheel->side * rs_arctangent(-DOT(axle, head->e1), DOT(axle, wheel->e2));
+	const rs_lane *axle = wheels->at.a;
+	rs_lane rise = DOT(axle, wheels->e3), back = -DOT(axle, wheels->e1), along = DOT(axle, wheels->e2), angle;
+	wheels->place[0] = wheels->side * DOT(wheels->e2, wheels->D) + 0.5 * x->spacing;
+	wheels->place[2] = DOT(wheels->e3, wheels->D) + x->raised;
+	arcsine(&rise, &angle);
+	wheels->place[1] = wheels->side * angle;
+	arctangent(&back, &along, &angle);
+	wheels->place[3] = wheels->side * angle;
 }
 
 /* The rail's own motion under the wheel, and the wheel's axes. */
-RS_INLINE double move_against_rail(double V, const double *slope, const rail_head *head, rs_wheel_state *wheel)
+RS_INLINE void move_against_rail(const given *x, double V, rs_wheels *wheels)
 {
-	rs_motion *m = &wheel->at;
-	double rail_turn[3], swept[3], out[3];
+	rs_motion_lanes *m = &wheels->at;
+	rs_lane rail_turn[3], swept[3], out[3], square;
 	EACH_AXIS(i)
-		rail_turn[i] = head->turn_rate * head->e1[i];
-	CROSS(swept, rail_turn, head->D);
-	m->close[1] -= V * slope[0];
-	m->close[2] -= V * slope[1];
+		rail_turn[i] = wheels->turn_rate * wheels->e1[i];
+	CROSS(swept, rail_turn, wheels->D);
+	m->close[1] -= V * x->slope[0];
+	m->close[2] -= V * x->slope[1];
 	EACH_AXIS(i) {
 		m->close[i] -= swept[i];
 		m->turn[i] -= rail_turn[i];
 	}
-	CROSS(out, m->a, wheel->e3);
-	double length = sqrt(DOT(out, out));
+	CROSS(out, m->a, wheels->e3);
+	square = DOT(out, out);
+	RS_SQRT(wheels->length, square);
+	rs_lane inverse = 1.0 / wheels->length;
 	EACH_AXIS(i)
-		m->f[i] = out[i] / length;
+		m->f[i] = out[i] * inverse;
 	CROSS(m->d, m->f, m->a);
-	return length;
 }
 
-/* length: |axle x e3|, the cosine of the roll against the rail. */
-RS_INLINE void wheel_tangents(const rail_head *head, double cq, double length, rs_wheel_state *wheel)
+RS_CLONES void rs_wheel_motion(const rs_wheel_rail *wr, const double *q, const double *u, double V, const double *w, const double *rail,
+                               int first, rs_wheels *wheels)
 {
-	const rs_motion *m = &wheel->at;
-	double rail_turn[3], a1 = DOT(m->a, head->e1), a2 = DOT(m->a, wheel->e2);
-	EACH_AXIS(i)
-		rail_turn[i] = head->turn_rate * head->e1[i];
-	for (int k = 0; k < RS_COLUMNS; k++) {
-		rs_motion *to = &wheel->to[k];
-		double out[3], *place = wheel->place_to[k];
-		CROSS(out, to->a, wheel->e3);
-		double along = DOT(m->f, out);
-		EACH_AXIS(i)
-			to->f[i] = (out[i] - along * m->f[i]) / length;
-		CROSS(to->d, to->f, m->a);
-		ADD_CROSS(to->d, m->f, to->a);
-		place[1] = wheel->side * DOT(to->a, wheel->e3) / length;
-		place[3] = wheel->side * (a1 * DOT(to->a, wheel->e2) - a2 * DOT(to->a, head->e1)) / (a1 * a1 + a2 * a2);
-		place[0] = k == Y || k == Z ? wheel->side * cq * wheel->e2[k] : 0.0;
-		place[2] = k == Y || k == Z ? cq * wheel->e3[k] : 0.0;
-		if (k == Y || k == Z) {
-			double unit[3] = {0.0, cq * (k == Y), cq * (k == Z)}, swept[3];
-			CROSS(swept, rail_turn, unit);
-			EACH_AXIS(i)
-				to->close[i] -= swept[i];
-		}
-	}
-}
-
-RS_CLONES void rs_axle_motion(const rs_wheelset *set, const double *q, const double *u, double V, const double *w,
-                                        const double *rail, const double *seed, rs_axle_state *axle)
-{
-	rs_motion shared, to[RS_COLUMNS];
-	memset(&shared, 0, sizeof shared);
-	axle_axes(q, axle);
-	axle_velocities(set, q, u, V, w, axle, &shared);
-	if (seed)
-		axle_tangents(u, w, seed, axle, to);
-	for (int k = 0; k < 2; k++) {
-		rs_wheel_state *wheel = &axle->wheel[k];
-		rail_head head;
-		wheel->side = k ? 1.0 : -1.0;
-		wheel->at = shared;
-		rail_axes(set, q, V, rail, wheel, &head);
-		place_on_rail(set, &head, wheel);
-		double length = move_against_rail(V, rail + 4 + 2 * k, &head, wheel);
-		if (!seed)
-			continue;
-		memcpy(wheel->to, to, sizeof to);
-		wheel_tangents(&head, seed[0], length, wheel);
-	}
+	given x;
+	gather(wr, q, u, w, rail, first, &x, wheels);
+	axle_motion(&x, V, wheels);
+	rail_axes(&x, V, wheels);
+	place_on_rail(&x, wheels);
+	move_against_rail(&x, V, wheels);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What the contact needs of a wheel's motion, its work memory, and the parts of the force computation.
  *
- * motion.c    wheelset and rails -> place and motion of each wheel, and their tangents
+ * motion.c    wheelset and rails -> place and motion of eight wheels
+ * tangents.c  their tangents, wheelset by wheelset
  * patches.c   patches in lanes of eight -> forces and moments on the wheelset, and their tangents
  * adhesion.c  creepages, load and ellipse of eight patches -> creep forces and slopes, by any creep law
  * cones.c     a contact in closed form that takes the place of a table
@@ -30,10 +31,21 @@ typedef struct RS_MOTION_FIELDS(rs_lane) rs_motion_lanes;
 enum { RS_MOTION_SIZE = sizeof(rs_motion) / sizeof(double) };
 _Static_assert(sizeof(rs_motion_lanes) == RS_MOTION_SIZE * sizeof(rs_lane), "the same fields");
 
+/* Eight wheels. */
 typedef struct {
-	double side;             /* -1 left, +1 right */
-	double e2[3], e3[3];     /* rail axes across and down, track frame */
+	rs_motion_lanes at;
+	rs_lane side;                       /* -1 left, +1 right */
+	rs_lane forward[3];                 /* level forward of the axle */
+	rs_lane e1[3], e2[3], e3[3];        /* rail axes along, across and down, track frame */
+	rs_lane D[3];                       /* from the rail's head to the wheelset's centre */
+	rs_lane turn_rate;                  /* of the rail about e1, rad/s */
+	rs_lane length;                     /* |axle x e3|, the cosine of the roll against the rail */
+	rs_lane place[RS_PLACE_SIZE];
+} rs_wheels;
+
+typedef struct {
 	double place[RS_PLACE_SIZE];
+	double side, e2[3], e3[3];  /* with at: of tangents only */
 	rs_motion at;
 	double place_to[RS_COLUMNS][RS_PLACE_SIZE];
 	rs_motion to[RS_COLUMNS];
@@ -42,8 +54,6 @@ typedef struct {
 	double log_ratio[RS_ZONES];  /* ln(a/b) */
 	double force[3], moment[3];  /* on the wheelset, about its centre */
 	double force_to[RS_COLUMNS][3], moment_to[RS_COLUMNS][3];
-	double tgamma;
-	double found[RS_ZONES][RS_PATCH_OUTPUTS];  /* in the order of patch */
 } rs_wheel_state;
 
 /* The axle's own part: level forward and axle direction, what its rows are taken about. */
@@ -56,9 +66,7 @@ typedef struct {
 /* Patches of eight at most. */
 typedef struct {
 	int count;
-	rs_wheel_state *wheel[RS_LANES];
-	const rs_wheel *given[RS_LANES];
-	int patch[RS_LANES];
+	int wheel[RS_LANES], patch[RS_LANES];  /* numbers */
 } rs_batch;
 
 /* Inputs of the creep forces, and what comes out: forces, and slopes over xi eta phi load ln(a b) ln(a/b). */
@@ -73,8 +81,16 @@ typedef struct {
 	rs_lane slope[3][RS_ADHESION_SLOPES];
 } rs_adhesion;
 
+/* What outputs are made of. */
+typedef struct {
+	rs_batch batch;
+	rs_lane load, creepage[3], creep[3], place[6];
+} rs_found;
+
 struct rs_wheel_rail {
-	int wheelsets;
+	int wheelsets, batches;
+	rs_wheels *wheels;       /* eights of wheels */
+	rs_found *found;         /* batches */
 	rs_wheelset *wheelset;
 	rs_creep_settings creep;
 	rs_creep_law *law;
@@ -88,12 +104,15 @@ typedef int rs_lookup(const rs_contact_table *shape, const double *place, rs_pat
 
 int rs_contact_cones_lookup(const rs_contact_table *shape, const double *place, rs_patch *patch, int *count, int *beyond);
 
-/* Places and motions of both wheels of one wheelset; seed NULL: no tangents. rail 8 numbers, q u w those of the wheelset. */
-void rs_axle_motion(const rs_wheelset *set, const double *q, const double *u, double V, const double *w,
-                    const double *rail, const double *seed, rs_axle_state *axle);
+/* Places and motions of eight wheels from number first on; q u of all coordinates, w 3 and rail 8 (or NULL) a wheelset. */
+void rs_wheel_motion(const rs_wheel_rail *wr, const double *q, const double *u, double V, const double *w, const double *rail, int first,
+                     rs_wheels *wheels);
+
+/* Tangents of a wheelset whose left wheel has a number, with its forward and axle; u w are those of the wheelset. */
+void rs_axle_tangents(const rs_wheels *eights, int number, const double *u, const double *w, const double *seed, rs_axle_state *axle);
 
 /* Adds forces, moments and, with tangents, theirs to the wheel of each patch of the batch. */
-void rs_patch_forces(const rs_wheel_rail *wr, double V, int tangents, const rs_batch *batch);
+void rs_patch_forces(const rs_wheel_rail *wr, double V, int tangents, const rs_batch *batch, rs_found *found);
 
 /* Creep forces of eight patches. */
 void rs_adhesion_forces(const rs_wheel_rail *wr, int slopes, const rs_adhesion_input *in, rs_adhesion *out);

@@ -12,6 +12,7 @@
  */
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "../trigonometry.h"
 #include "motion.h"
@@ -66,31 +67,57 @@ static void spread_patches(const double *const *from, int columns, inputs *to)
 				RS_AT(to->patch[row][k], l) = from[l][5 * row + k];
 }
 
+/* Motion of the batch's wheels, which most often are eight wheels with one patch each. */
+static void gather_motion(const rs_wheel_rail *wr, const int *number, inputs *to)
+{
+	int first = number[0] / RS_LANES, same = number[0] % RS_LANES == 0;
+	RS_EACH(l)
+		same &= number[l] == number[0] + l;
+	if (same) {
+		const rs_wheels *from = wr->wheels + first;
+		to->at = from->at;
+		to->side = from->side;
+		memcpy(to->e2, from->e2, sizeof to->e2);
+		memcpy(to->e3, from->e3, sizeof to->e3);
+		return;
+	}
+	RS_EACH(l) {
+		const rs_wheels *from = wr->wheels + number[l] / RS_LANES;
+		int k = number[l] % RS_LANES;
+		RS_AT(to->side, l) = RS_OF(from->side, k);
+		EACH_AXIS(i) {
+			RS_AT(to->e2[i], l) = RS_OF(from->e2[i], k);
+			RS_AT(to->e3[i], l) = RS_OF(from->e3[i], k);
+		}
+		for (int i = 0; i < RS_MOTION_SIZE; i++)
+			RS_AT(((rs_lane *)&to->at)[i], l) = RS_OF(((const rs_lane *)&from->at)[i], k);
+	}
+}
+
 /* Lanes that are not used repeat the first one. */
 static void gather(const rs_wheel_rail *wr, const rs_batch *batch, int tangents, inputs *to)
 {
-	rs_wheel_state *wheel[RS_LANES];
+	const rs_wheel_state *wheel[RS_LANES];
 	const double *patch[RS_LANES];
+	int numbers[RS_LANES];
 	RS_EACH(l) {
-		int from = l < batch->count ? l : 0, number = batch->patch[from];
-		const rs_wheel *given = batch->given[from];
+		int from = l < batch->count ? l : 0, number = batch->wheel[from];
+		const rs_wheel *given = &wr->wheelset[number / 2].wheel[number % 2];
 		double c[4], slope[4];
-		wheel[l] = batch->wheel[from];
-		patch[l] = wheel[l]->patch[number].load;
+		numbers[l] = number;
+		wheel[l] = &wr->axle[number / 2].wheel[number % 2];
+		patch[l] = wheel[l]->patch[batch->patch[from]].load;
 		RS_AT(to->damping, l) = given->damping;
 		RS_AT(to->adhesion.friction, l) = given->friction;
 		RS_AT(to->adhesion.weight, l) = given->weight;
-		rs_kalker_at(&wr->creep, wheel[l]->log_ratio[number], c, slope);
+		rs_kalker_at(&wr->creep, wheel[l]->log_ratio[batch->patch[from]], c, slope);
 		for (int j = 0; j < 4; j++) {
 			RS_AT(to->adhesion.c[j], l) = c[j];
 			RS_AT(to->adhesion.c_to[j], l) = slope[j];
 		}
 	}
 	spread_patches(patch, tangents ? 5 : 1, to);
-	SPREAD(side, 1, &to->side);
-	SPREAD(e2, 3, to->e2);
-	SPREAD(e3, 3, to->e3);
-	SPREAD(at, RS_MOTION_SIZE, &to->at);
+	gather_motion(wr, numbers, to);
 	if (tangents) {
 		SPREAD(place_to, RS_COLUMNS * RS_PLACE_SIZE, to->place_to);
 		SPREAD(to, RS_COLUMNS * RS_MOTION_SIZE, to->to);
@@ -241,34 +268,30 @@ RS_CLONES static void contact(const rs_wheel_rail *wr, double V, int tangents, i
 	}
 }
 
-static void report(const inputs *x, const results *y, int l, int number, rs_wheel_state *wheel)
+static void keep(const inputs *x, const results *y, const rs_batch *batch, rs_found *to)
 {
 	static const int rows[] = {ALONG, ACROSS, RADIUS, ANGLE, SEMI_A, SEMI_B};
-	double *found = wheel->found[number];
-	found[RS_PATCH_LOAD] = RS_OF(x->adhesion.load, l);
-	for (int j = 0; j < 3; j++) {
-		found[RS_PATCH_XI + j] = RS_OF(x->adhesion.creepage[j], l);
-		found[RS_PATCH_FX + j] = RS_OF(y->creep.force[j], l);
-	}
+	to->batch = *batch;
+	to->load = x->adhesion.load;
+	memcpy(to->creepage, x->adhesion.creepage, sizeof to->creepage);
+	memcpy(to->creep, y->creep.force, sizeof to->creep);
 	for (int j = 0; j < 6; j++)
-		found[RS_PATCH_X + j] = RS_OF(x->patch[rows[j]][0], l);
-	for (int j = 0; j < 2; j++)
-		wheel->tgamma += fabs(found[RS_PATCH_XI + j] * found[RS_PATCH_FX + j]);
-	EACH_AXIS(i) {
-		wheel->force[i] += RS_OF(y->force[i], l);
-		wheel->moment[i] += RS_OF(y->moment[i], l);
-	}
+		to->place[j] = x->patch[rows[j]][0];
 }
 
-void rs_patch_forces(const rs_wheel_rail *wr, double V, int tangents, const rs_batch *batch)
+void rs_patch_forces(const rs_wheel_rail *wr, double V, int tangents, const rs_batch *batch, rs_found *found)
 {
 	inputs x;
 	results y;
 	gather(wr, batch, tangents, &x);
 	contact(wr, V, tangents, &x, &y);
+	keep(&x, &y, batch, found);
 	for (int l = 0; l < batch->count; l++) {
-		rs_wheel_state *wheel = batch->wheel[l];
-		report(&x, &y, l, batch->patch[l], wheel);
+		rs_wheel_state *wheel = &wr->axle[batch->wheel[l] / 2].wheel[batch->wheel[l] % 2];
+		EACH_AXIS(i) {
+			wheel->force[i] += RS_OF(y.force[i], l);
+			wheel->moment[i] += RS_OF(y.moment[i], l);
+		}
 		for (int k = 0; tangents && k < RS_COLUMNS; k++)
 			EACH_AXIS(i) {
 				wheel->force_to[k][i] += RS_OF(y.force_to[k][i], l);

@@ -44,8 +44,10 @@ rs_wheel_rail *rs_wheel_rail_create(int wheelsets, const rs_wheelset *wheelset, 
 	size_t n = (size_t)wheelsets, coefficients = 16 * (size_t)creep->pieces;
 	wr->wheelset = malloc(n * sizeof *wr->wheelset);
 	wr->axle = calloc(n, sizeof *wr->axle);
+	wr->wheels = aligned_alloc(sizeof(rs_lane), (2 * n + RS_LANES - 1) / RS_LANES * sizeof *wr->wheels);
+	wr->found = aligned_alloc(sizeof(rs_lane), (2 * n * RS_ZONES + RS_LANES - 1) / RS_LANES * sizeof *wr->found);
 	wr->coefficients = malloc(coefficients * sizeof *wr->coefficients);
-	if (!wr->wheelset || !wr->axle || !wr->coefficients) {
+	if (!wr->wheelset || !wr->axle || !wr->wheels || !wr->found || !wr->coefficients) {
 		rs_wheel_rail_free(wr);
 		return NULL;
 	}
@@ -65,6 +67,8 @@ void rs_wheel_rail_free(rs_wheel_rail *wr)
 		return;
 	free(wr->wheelset);
 	free(wr->axle);
+	free(wr->wheels);
+	free(wr->found);
 	free(wr->coefficients);
 	free(wr);
 }
@@ -104,7 +108,6 @@ static void clear(rs_axle_state *axle, int tangents)
 		rs_wheel_state *wheel = &axle->wheel[k];
 		EACH_AXIS(i)
 			wheel->force[i] = wheel->moment[i] = 0.0;
-		wheel->tgamma = 0.0;
 		if (!tangents)
 			continue;
 		memset(wheel->force_to, 0, sizeof wheel->force_to);
@@ -116,21 +119,20 @@ static void clear(rs_axle_state *axle, int tangents)
 static void all_patches(rs_wheel_rail *wr, double V, int tangents)
 {
 	rs_batch batch;
-	batch.count = 0;
+	batch.count = wr->batches = 0;
 	for (int number = 0; number < 2 * wr->wheelsets; number++) {
-		rs_wheel_state *wheel = &wr->axle[number / 2].wheel[number % 2];
+		const rs_wheel_state *wheel = &wr->axle[number / 2].wheel[number % 2];
 		for (int k = 0; k < wheel->count; k++) {
-			batch.wheel[batch.count] = wheel;
-			batch.given[batch.count] = &wr->wheelset[number / 2].wheel[number % 2];
+			batch.wheel[batch.count] = number;
 			batch.patch[batch.count++] = k;
 			if (batch.count < RS_LANES)
 				continue;
-			rs_patch_forces(wr, V, tangents, &batch);
+			rs_patch_forces(wr, V, tangents, &batch, &wr->found[wr->batches++]);
 			batch.count = 0;
 		}
 	}
 	if (batch.count)
-		rs_patch_forces(wr, V, tangents, &batch);
+		rs_patch_forces(wr, V, tangents, &batch, &wr->found[wr->batches++]);
 }
 
 static int rows_are_finite(rs_wheel_rail *wr)
@@ -176,16 +178,33 @@ static void axle_block(const rs_axle_state *axle, const double *moment, double *
 	}
 }
 
+/* The axle's directions and its wheels' places out of their lanes. */
+static void take_motion(rs_wheel_rail *wr, int k)
+{
+	rs_axle_state *axle = &wr->axle[k];
+	for (int side = 0; side < 2; side++) {
+		const rs_wheels *from = &wr->wheels[(2 * k + side) / RS_LANES];
+		int l = (2 * k + side) % RS_LANES;
+		for (int i = 0; i < RS_PLACE_SIZE; i++)
+			axle->wheel[side].place[i] = RS_OF(from->place[i], l);
+		EACH_AXIS(i) {
+			axle->forward[i] = RS_OF(from->forward[i], l);
+			axle->axle[i] = RS_OF(from->at.a[i], l);
+		}
+	}
+}
+
 int rs_wheel_rail_rows(rs_wheel_rail *wr, const double *q, const double *u, double V, const double *w,
                        const double *rail, const double *seed, double *rows, double *blocks)
 {
-	static const double as_designed[8] = {0.0};
 	if (!(V > 0.0))
 		return fail(wr, RS_BAD_SPEED, -1, -1, V);
+	for (int first = 0; first < 2 * wr->wheelsets; first += RS_LANES)
+		rs_wheel_motion(wr, q, u, V, w, rail, first, &wr->wheels[first / RS_LANES]);
 	for (int k = 0; k < wr->wheelsets; k++) {
-		const rs_wheelset *set = &wr->wheelset[k];
-		rs_axle_motion(set, q + set->first, u + set->first, V, w + 3 * k, rail ? rail + 8 * k : as_designed,
-		               blocks ? seed : NULL, &wr->axle[k]);
+		take_motion(wr, k);
+		if (blocks)
+			rs_axle_tangents(wr->wheels, 2 * k, u + wr->wheelset[k].first, w + 3 * k, seed, &wr->axle[k]);
 		clear(&wr->axle[k], blocks != NULL);
 		for (int side = 0; side < 2; side++) {
 			int status = look_up(wr, 2 * k + side, blocks != NULL);
@@ -214,21 +233,35 @@ void rs_wheel_rail_failure(const rs_wheel_rail *wr, int *wheel, int *variable, d
 		place[k] = wr->failed_wheel < 0 ? 0.0 : wr->axle[wr->failed_wheel / 2].wheel[wr->failed_wheel % 2].place[k];
 }
 
+static void patch_outputs(const rs_found *found, int l, double *to)
+{
+	to[RS_PATCH_LOAD] = RS_OF(found->load, l);
+	for (int j = 0; j < 3; j++) {
+		to[RS_PATCH_XI + j] = RS_OF(found->creepage[j], l);
+		to[RS_PATCH_FX + j] = RS_OF(found->creep[j], l);
+	}
+	for (int j = 0; j < 6; j++)
+		to[RS_PATCH_X + j] = RS_OF(found->place[j], l);
+}
+
 void rs_wheel_rail_outputs(const rs_wheel_rail *wr, double *wheel, double *patch)
 {
 	memset(patch, 0, sizeof(double) * 2 * (size_t)wr->wheelsets * RS_ZONES * RS_PATCH_OUTPUTS);
 	for (int number = 0; number < 2 * wr->wheelsets; number++) {
 		const rs_wheel_state *from = &wr->axle[number / 2].wheel[number % 2];
 		double *to = wheel + RS_WHEEL_OUTPUTS * number;
-		to[RS_WHEEL_Y] = -from->side * from->force[1];
+		to[RS_WHEEL_Y] = number % 2 ? -from->force[1] : from->force[1];
 		to[RS_WHEEL_Q] = -from->force[2];
 		to[RS_WHEEL_X] = from->force[0];
-		to[RS_WHEEL_TGAMMA] = from->tgamma;
-		to[RS_WHEEL_PATCHES] = 0.0;
-		for (int k = 0; k < from->count; k++) {
-			to[RS_WHEEL_PATCHES] += from->found[k][RS_PATCH_LOAD] > 0.0;
-			memcpy(patch + RS_PATCH_OUTPUTS * (RS_ZONES * number + from->patch[k].zone), from->found[k],
-			       sizeof from->found[k]);
-		}
+		to[RS_WHEEL_TGAMMA] = to[RS_WHEEL_PATCHES] = 0.0;
 	}
+	for (int k = 0; k < wr->batches; k++)
+		for (int l = 0; l < wr->found[k].batch.count; l++) {
+			const rs_batch *batch = &wr->found[k].batch;
+			int number = batch->wheel[l], zone = wr->axle[number / 2].wheel[number % 2].patch[batch->patch[l]].zone;
+			double *to = wheel + RS_WHEEL_OUTPUTS * number, *own = patch + RS_PATCH_OUTPUTS * (RS_ZONES * number + zone);
+			patch_outputs(&wr->found[k], l, own);
+			to[RS_WHEEL_PATCHES] += own[RS_PATCH_LOAD] > 0.0;
+			to[RS_WHEEL_TGAMMA] += fabs(own[RS_PATCH_XI] * own[RS_PATCH_FX]) + fabs(own[RS_PATCH_XI + 1] * own[RS_PATCH_FX + 1]);
+		}
 }
