@@ -71,18 +71,33 @@ static void capture(rs_system *system, int kernel, int block, const double *rows
 	}
 }
 
-/* Residual of all bodies from the rows of all groups. */
+/* Residual of one body from the rows of all groups: the first ones each from one place a term, the others one by one. */
+static RS_ALWAYS_INLINE void sum_block(const rs_row_sums *sums, int block, int lead, int size, double *restrict to)
+{
+	double sum[RS_BLOCK] = {0.0};
+	const int *row = sums->row + RS_BLOCK * sums->first[block], *end = sums->row + RS_BLOCK * sums->first[block + 1];
+	for (; row < end; row += RS_BLOCK) {
+		const double *from = sums->values + row[0];
+		for (int i = 0; i < lead; i++)
+			sum[i] += from[i * LANES];
+		for (int i = lead; i < size; i++)
+			sum[i] += sums->values[row[i]];
+	}
+	for (int i = 0; i < RS_BLOCK; i++)
+		to[i] = sum[i];
+}
+
 static void sum_rows(const rs_system *system)
 {
 	const rs_row_sums *sums = &system->sums;
-	const double *restrict values = sums->values;
 	for (int block = 0; RS_BLOCK * block < system->size; block++) {
-		double sum[RS_BLOCK] = {0.0}, *restrict to = system->r + RS_BLOCK * block;
-		for (int k = sums->first[block]; k < sums->first[block + 1]; k++)
-			for (int i = 0; i < RS_BLOCK; i++)
-				sum[i] += values[sums->row[RS_BLOCK * k + i]];
-		for (int i = 0; i < RS_BLOCK; i++)
-			to[i] = sum[i];
+		double *to = system->r + RS_BLOCK * block;
+		if (sums->lead[block] == 6)
+			sum_block(sums, block, 6, 6, to);
+		else if (sums->lead[block] == 5)
+			sum_block(sums, block, 5, RS_BLOCK, to);
+		else
+			sum_block(sums, block, 0, RS_BLOCK, to);
 	}
 }
 

@@ -30,6 +30,7 @@ typedef struct {
 	double *values;        /* rows of all groups, then a zero */
 	int *first;            /* blocks + 1, terms of a block */
 	int *row;              /* terms x 8 */
+	int *lead;             /* blocks, first rows that in every term are coordinates 0, 1 ... of one lane: six, five or none */
 } rs_row_sums;
 
 enum { RS_KEPT = 2 * RS_MAX_COORDINATES + 2, RS_KEPT_ROW = RS_MAX_COORDINATES,

@@ -189,13 +189,33 @@ static void number_terms(rs_system *system, const int *terms)
 	}
 }
 
+static int leads(const rs_row_sums *sums, int block, int rows)
+{
+	for (int k = sums->first[block]; k < sums->first[block + 1]; k++)
+		for (int i = 0; i < rows; i++)
+			if (sums->row[RS_BLOCK * k + i] != sums->row[RS_BLOCK * k] + i * rs_kernel_lanes())
+				return 0;
+	return rows;
+}
+
+static void find_leads(const rs_system *system)
+{
+	const rs_row_sums *sums = &system->sums;
+	for (int block = 0; RS_BLOCK * block < system->size; block++) {
+		sums->lead[block] = system->lu->size[block] == 6 ? leads(sums, block, 6) : 0;
+		if (!sums->lead[block])
+			sums->lead[block] = leads(sums, block, 5);
+	}
+}
+
 static int make_sums(rs_system *system)
 {
 	rs_row_sums *sums = &system->sums;
 	int blocks = system->size / RS_BLOCK, fine = 0;
 	int *terms = calloc((size_t)system->size, sizeof *terms);
 	sums->first = malloc((size_t)(blocks + 1) * sizeof *sums->first);
-	if (terms && sums->first) {
+	sums->lead = malloc((size_t)(blocks + 1) * sizeof *sums->lead);
+	if (terms && sums->first && sums->lead) {
 		visit_rows(system, terms, 0);
 		number_terms(system, terms);
 		size_t count = (size_t)sums->first[blocks] * RS_BLOCK, bytes = ((size_t)sums->row_count + 1) * sizeof(double);
@@ -208,6 +228,7 @@ static int make_sums(rs_system *system)
 		if (fine) {
 			sums->values[sums->row_count] = 0.0;
 			visit_rows(system, terms, 1);
+			find_leads(system);
 		}
 	}
 	free(terms);
@@ -260,6 +281,7 @@ void rs_system_free(rs_system *system)
 	free(system->scatter);
 	free(system->sums.values);
 	free(system->sums.first);
+	free(system->sums.lead);
 	free(system->sums.row);
 	rs_block_lu_free(system->lu);
 	free(system->place);
