@@ -15,11 +15,12 @@ from railsym.cli_damper import add_damper
 from railsym.cli_pair import add_contact
 from railsym.cli_profiles import add_parser as add_profiles
 from railsym.cli_simulate import add_simulate
+from railsym.cli_study import add_study
 from railsym.cli_switch import add_switch
 from railsym.cli_values import CommandError, criterion, numbers
 from railsym.errors import RailsymError
 
-_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate", "switch", "bifurcation")
+_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate", "switch", "bifurcation", "study")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -122,6 +123,7 @@ def _parser():
     add_simulate(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_simulate", "run"))
     add_switch(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_switch", "run"))
     add_bifurcation(commands, _typed, _add_output).set_defaults(run=_run("cli_bifurcation", "run"))
+    add_study(commands, _typed, _add_output).set_defaults(run=_run("cli_study", "run"))
     return parser, commands
 
 

@@ -121,3 +121,9 @@ def summary(results, output):
         found |= {name: float(np.quantile(good, q)) for name, q in (("minimum", 0.0), ("5 % quantile", 0.05), ("median", 0.5), ("95 % quantile", 0.95),
                                                                    ("maximum", 1.0))}
     return found, unit
+
+
+def extremes(results, output):
+    """Numbers of the cases with the lowest and the highest value: dict of the names in `summary`."""
+    values = results[output]
+    return {} if np.isnan(values).all() else {"minimum": int(np.nanargmin(values)), "maximum": int(np.nanargmax(values))}

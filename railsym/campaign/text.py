@@ -15,7 +15,8 @@ def as_text(found):
     results, output = found.results, found.output
     numbers, unit = summary(results, output)
     blocks = [f"{found.campaign.title}\n{results.message}"]
-    blocks.append(f"{output}, {unit}\n" + table(["", ""], [[name, _number(value)] for name, value in numbers.items() if value or name in ("cases", "failed")]))
+    blocks.append(table([f"{output}, {unit}" if unit else output, "value"],
+                        [[name, _number(value)] for name, value in numbers.items() if value or name in ("cases", "failed")]))
     if results.errors:
         case, error = next(iter(results.errors.items()))
         blocks.append(f"{len(results.errors)} cases failed; case {case}: {error}")

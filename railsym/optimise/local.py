@@ -112,14 +112,15 @@ class _Run:
         if start.failed:
             raise OptimisationError(f"the start has no result: {start.error}; give other starts")
         for _ in range(_RETRIES):
+            failed = False
             try:
                 converged, message = method(self, place, low, high)
             except _Failed as failure:
-                converged, message = False, f"cases fail near the best one: {failure.reason}"
+                failed, converged, message = True, False, f"cases fail near the best one: {failure.reason}"
                 self._wall(fails, failure.places)
             place = self.problem.places(self.best().values)
             touched = [(fails[0] < place) & (place - low < _AT_BOUND), (fails[1] > place) & (high - place < _AT_BOUND)]
-            if converged and not np.any(touched):
+            if not failed and not np.any(touched):
                 break
             low, high = np.fmax(0.5 * (fails[0] + place), 0.0), np.fmin(0.5 * (fails[1] + place), 1.0)
         return self.result(_NAMES[name], converged, message, start)
@@ -170,7 +171,7 @@ class _Run:
         violation = self.problem.violation(best.outputs)
         if violation > _KEPT:
             converged, message = False, f"no case keeps all constraints ({message})"
-        return Optimum(self.problem, dict(zip(self.problem.names, best.values)), best.outputs, self.problem.objectives[0].value(best.outputs), violation,
+        return Optimum(self.problem, best.number, dict(zip(self.problem.names, best.values)), best.outputs, self.problem.objectives[0].value(best.outputs), violation,
                        start, bounds, converged, len(cases), self.evaluations.computed, sum(c.failed for c in cases), method, message, tuple(cases))
 
 
@@ -205,11 +206,25 @@ def _slsqp(run, place, low, high):
                     jacobian.append([*(side * g / (abs(bound) or 1.0)), 0.0])
         return np.array(value), np.array(jacobian)
 
-    t = sign * objective.value(run.case(place, True).outputs) / run.scale
-    unit = np.r_[np.zeros(count), 1.0]
-    found = minimize(lambda z: z[count], np.r_[place, t], jac=lambda z: unit, method="SLSQP", bounds=[*zip(low, high), (None, None)],
-                     constraints={"type": "ineq", "fun": lambda z: rows(z)[0], "jac": lambda z: rows(z)[1]},
-                     options={"maxiter": run.most, "ftol": run.tolerance})
+    bounds, options = [*zip(low, high)], {"maxiter": run.most, "ftol": run.tolerance}
+    if len(objective.outputs) == 1:      # smooth as it is
+        name, = objective.outputs
+
+        def value(places):
+            case = run.case(places, True)
+            slope = np.array([v.slope(x) for v, x in zip(problem.variables, case.values)])
+            return sign * case.outputs[name] / run.scale, sign * np.array(case.gradient[name]) * slope / run.scale
+
+        def kept(places):
+            return tuple(part[:, :count] if part.ndim == 2 else part for part in (r[1:] for r in rows(np.r_[places, 0.0])))
+
+        found = minimize(value, place, jac=True, method="SLSQP", bounds=bounds, options=options,
+                         constraints={"type": "ineq", "fun": lambda p: kept(p)[0], "jac": lambda p: kept(p)[1]} if problem.constraints else ())
+    else:
+        t = sign * objective.value(run.case(place, True).outputs) / run.scale
+        unit = np.r_[np.zeros(count), 1.0]
+        found = minimize(lambda z: z[count], np.r_[place, t], jac=lambda z: unit, method="SLSQP", bounds=[*bounds, (None, None)], options=options,
+                         constraints={"type": "ineq", "fun": lambda z: rows(z)[0], "jac": lambda z: rows(z)[1]})
     return bool(found.success), f"{found.message}, {found.nit} iterations"
 
 

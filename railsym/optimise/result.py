@@ -18,6 +18,8 @@ class Optimum:
     Attributes
     ----------
     problem : Problem
+    number : int
+        Of the case.
     values : dict of str to float
         SI.
     outputs : dict of str to float
@@ -39,6 +41,7 @@ class Optimum:
     """
 
     problem: Problem = field(repr=False)
+    number: int
     values: dict[str, float]
     outputs: dict[str, float]
     objective: float
@@ -55,7 +58,7 @@ class Optimum:
 
     def __str__(self):
         objective = self.problem.objectives[0]
-        lines = [f"{objective.sense} {objective.name}: {self.objective:.6g} {objective.unit} ({self.method}: {self.message})"]
+        lines = [f"{objective.sense} {objective.name}: {self.objective:.6g} {objective.unit} (case {self.number}; {self.method}: {self.message})"]
         if self.start is not None and not self.start.failed:
             lines[0] += f"; {objective.value(self.start.outputs):.6g} at the start"
         for variable in self.problem.variables:

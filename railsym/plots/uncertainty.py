@@ -25,7 +25,7 @@ def plot_tornado(result, *, count=15, axes=None):
         The widest on top.
     """
     count = min(count, len(result.names))
-    axes = new_axes(axes, size=(8.4, 1.6 + 0.32 * count))[0, 0]
+    axes = new_axes(axes, size=(8.4, 1.9 + 0.34 * max(count, 3)))[0, 0]
     factor, unit = shown(result.unit)
     place = np.arange(count)
     for change, colour, level in ((result.change_low, SKY, result.levels[0]), (result.change_high, BLUE, result.levels[1])):
@@ -41,7 +41,7 @@ def plot_tornado(result, *, count=15, axes=None):
          f"standard deviation {factor * result.deviation:.3g} {unit} (first order)")
     axes.set_ylim(count - 0.4, -0.6)
     axes.grid(False, axis="y")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.4, -0.45 / (0.32 * count + 0.9)), ncols=3, fontsize=8, frameon=False)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.4, -0.5 / (0.34 * max(count, 3) + 0.9)), ncols=3, fontsize=8, frameon=False)
     return axes
 
 
@@ -66,7 +66,7 @@ def plot_sobol(result, *, count=15, axes=None):
         The largest total index on top.
     """
     order = np.argsort(-result.total)[:count]
-    axes = new_axes(axes, size=(8.0, 1.6 + 0.32 * len(order)))[0, 0]
+    axes = new_axes(axes, size=(8.0, 1.4 + 0.38 * max(len(order), 3)))[0, 0]
     place = np.arange(len(order))
     for values, half, shift, colour, text in ((result.first, result.first_half, -0.19, BLUE, "first order: alone"),
                                               (result.total, result.total_half, 0.19, ORANGE, "total: with all others")):

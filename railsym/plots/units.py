@@ -26,6 +26,8 @@ def labelled(name, unit):
 def round_range(values):
     """Tick texts of the ends of a range: as short as tells them apart."""
     low, high = float(min(values)), float(max(values))
+    if low == high:
+        return f"{low:.4g}", ""
     for digits in range(3, 8):
         texts = f"{low:.{digits}g}", f"{high:.{digits}g}"
         if texts[0] != texts[1]:
