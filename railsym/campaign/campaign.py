@@ -132,6 +132,8 @@ class _Run:
         self.stages.append(Stage(name, text, perf_counter() - start, message))
         if message:
             self.say(f"  {message}")
+        for case, error in list(getattr(found, "errors", {}).items())[:1]:
+            self.say(f"  the first that failed, case {case}: {error}")
         return found
 
     def study(self, name, study):
