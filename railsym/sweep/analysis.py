@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import MISSING, dataclass, field, fields
 from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from railsym.units import UnitError, to_si
 
 KINDS = {
     "critical_speed": "railsym.sweep.critical_speed:CriticalSpeed",
+    "damper_loop": "railsym.sweep.damper_loop:DamperLoop",
+    "modes": "railsym.sweep.modes:Modes",
+    "transient": "railsym.sweep.transient:Transient",
 }
 
 
@@ -60,9 +64,15 @@ class Analysis:
         raise NotImplementedError
 
 
-def option(default=MISSING, unit=None):
-    """A setting (dataclass field), with its SI unit where it has a dimension."""
-    return field(default=default, metadata={"unit": unit})
+def option(default=MISSING, unit=None, path=False):
+    """A setting (dataclass field), with its SI unit where it has a dimension; ``path``: a name, or a file (relative to the study's)."""
+    return field(default=default, metadata={"unit": unit, "path": path})
+
+
+def files_of(analysis):
+    """Files that an analysis reads, by setting."""
+    named = {one.name: getattr(analysis, one.name) for one in fields(analysis) if one.metadata.get("path")}
+    return {name: Path(value) for name, value in named.items() if value is not None and Path(value).is_file()}
 
 
 def analysis_class(kind):
@@ -94,8 +104,8 @@ def to_table(analysis):
     return table
 
 
-def from_table(table):
-    """An analysis from its table in a file.
+def from_table(table, folder=None):
+    """An analysis from its table in a file, whose paths are relative to a folder.
 
     Raises
     ------
@@ -113,6 +123,8 @@ def from_table(table):
         if name not in known:
             raise SweepError(f"[analysis] {name} is {unknown(name, known, 'settings of ' + table['kind'])}")
         given[name] = _setting(f"[analysis] {name}", value, known[name].metadata.get("unit"))
+        if known[name].metadata.get("path") and folder is not None and (Path(folder) / str(value)).is_file():
+            given[name] = str(Path(folder) / value)
     try:
         return made(**given)
     except TypeError as error:

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from railsym.critical_cases import CriticalSpeedSolver
 from railsym.critical_speed import SPEED_RANGE, damping_ratio_of
 from railsym.stability import FREQUENCY_BAND
 from railsym.sweep.analysis import Analysis, Output, option
-from railsym.sweep.linear_contact import contact_inputs, contact_of
+from railsym.sweep.linear_contact import contact_inputs, solver_by_contact
 
 FOUND, STABLE, UNSTABLE = "found", "stable", "unstable_at_start"
 
@@ -63,14 +62,11 @@ class CriticalSpeed(Analysis):
         options = {"damping_ratio": damping_ratio_of(self.criterion, self.damping_ratio), "speed_range": self.speed_range,
                    "frequency_band": self.frequency_band}
 
-        @lru_cache(maxsize=1)
-        def solver_of(contact):
-            return CriticalSpeedSolver(vehicle, contact=contact, **options)
+        solver_of = solver_by_contact(lambda contact: CriticalSpeedSolver(vehicle, contact=contact, **options), self.conicity)
 
         def solve(case):
-            contact = contact_of(self.conicity, case.settings)
-            # one solver serves all conicities; what else of the contact changes needs another
-            found = solver_of(replace(contact, conicity=0.2)).solve(case.changes, contact.conicity)
+            solver, conicity = solver_of(case.settings)
+            found = solver.solve(case.changes, conicity)
             if found.speed is None:
                 return {"speed": np.nan, "frequency_hz": np.nan, "verdict": UNSTABLE if found.unstable_at_start else STABLE, "label": ""}
             return {"speed": found.speed, "frequency_hz": found.frequency_hz, "verdict": FOUND, "label": found.label}

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 import numpy as np
 
@@ -106,16 +105,14 @@ class LatinHypercube(Plan):
         return int(self.cases)
 
     def rows(self, space, start, stop, seed):
-        return np.column_stack([space.quantile(k, _latin_column(int(self.cases), seed, name)[start:stop])
-                                for k, name in enumerate(space.names)])
+        return np.column_stack([space.quantile(k, self._column(seed, name)[start:stop]) for k, name in enumerate(space.names)])
 
-
-@lru_cache(maxsize=256)
-def _latin_column(cases, seed, name):
-    """One column of the hypercube by SciPy, kept: 8 bytes a case. Columns of a plain Latin hypercube are independent."""
-    column = _engine("LatinHypercube", 1, _stream(seed, name)).random(cases)[:, 0]
-    column.flags.writeable = False
-    return column
+    def _column(self, seed, name):
+        """One column of the hypercube by SciPy, kept with the plan: 8 bytes a case. Columns of a plain Latin hypercube are independent."""
+        kept = self.__dict__.setdefault("_kept", {})
+        if (seed, name) not in kept:
+            kept[seed, name] = _engine("LatinHypercube", 1, _stream(seed, name)).random(int(self.cases))[:, 0]
+        return kept[seed, name]
 
 
 def _stream(seed, name):

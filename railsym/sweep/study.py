@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from railsym.sweep.analysis import Analysis
+from railsym.sweep.analysis import Analysis, files_of
 from railsym.sweep.errors import SweepError, unknown
 from railsym.sweep.factors import List
 from railsym.sweep.plans import MOST, Plan
@@ -161,6 +161,9 @@ class Study:
     @cached_property
     def hash(self):
         content = self.document() | {"vehicle_file": _digest(self.path.read_bytes())}
+        files = files_of(self.analysis)
+        if files:
+            content["analysis"] = {**content["analysis"], **{name: _digest(file.read_bytes()) for name, file in files.items()}}
         if self.plan.kind == "table":
             content["plan"] = {"kind": "table", "rows": _digest(np.ascontiguousarray(self.rows(), dtype=">f8").tobytes())}
         del content["study"]["vehicle"]
@@ -210,17 +213,20 @@ def _digest(data):
 
 def _si(vehicle, inputs, name, value):
     """What is set, in SI: float or array, or the name of a curve."""
-    if isinstance(value, str):
+    if isinstance(value, str) and name not in inputs:
         return value
     number, unit = (value.value, value.unit) if isinstance(value, Quantity) else (value, None)
+    shown = repr(value) if unit is None else f"[{number!r}, {unit!r}]"
     try:
         number = np.asarray(number, dtype=float)
         if unit is not None:
             number = np.asarray(to_si(number, unit, inputs[name].unit if name in inputs else parameter_unit(vehicle, name)))
+    except SweepError:
+        raise
     except (UnitError, TypeError, ValueError) as error:
-        raise SweepError(f"set {name!r} = {value!r}: {error}") from None
+        raise SweepError(f"set {name!r} = {shown}: a finite number is needed ({error})") from None
     if not np.isfinite(number).all() or (name in inputs and number.ndim):
-        raise SweepError(f"set {name!r} = {value!r}: a finite number is needed")
+        raise SweepError(f"set {name!r} = {shown}: a finite number is needed")
     return float(number) if number.ndim == 0 else number
 
 

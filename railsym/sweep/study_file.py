@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from railsym.sweep import plans as plan_kinds
-from railsym.sweep.analysis import _plain, from_table, to_table
+from railsym.sweep.analysis import _plain, files_of, from_table, to_table
 from railsym.sweep.errors import SweepError, unknown
 from railsym.sweep.factor_table import factor_from_table, factor_to_table, set_from_table, set_to_table
 from railsym.vehicle import vehicles
@@ -62,9 +62,9 @@ def from_document(content, folder=None, rows=None):
     factors = {name: factor_from_table(name, table) for name, table in content["factors"].items()}
     plan = plan_from_table(content["plan"], folder, rows and (lambda: rows(list(factors))))
     vehicle = head["vehicle"]
-    if folder is not None and vehicle not in vehicles():
+    if folder is not None and vehicle not in vehicles() and (folder / vehicle).is_file():
         vehicle = str(folder / vehicle)
-    return Study(vehicle, from_table(content["analysis"]), factors, plan, configuration=head.get("configuration"),
+    return Study(vehicle, from_table(content["analysis"], folder), factors, plan, configuration=head.get("configuration"),
                  set=set_from_table(content.get("set", {})), keep=head.get("keep"), seed=head.get("seed", 0))
 
 
@@ -133,6 +133,8 @@ def save(study, path):
     path, content = Path(path), document(study)
     if study.vehicle not in vehicles():
         content["study"]["vehicle"] = os.path.relpath(study.vehicle, path.parent)
+    for name, file in files_of(study.analysis).items():
+        content["analysis"][name] = os.path.relpath(file, path.parent)
     try:
         if "cases" in content["plan"] and study.plan.kind == "table":
             beside = path.with_name(path.stem + "_cases.npy")
