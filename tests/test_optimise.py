@@ -259,3 +259,67 @@ def test_robust_designs_say_what_fails():
 def test_what_cannot_be_done_is_said(make, text):
     with pytest.raises(OptimisationError, match=text):
         make()
+
+
+# --- workers and studies -------------------------------------------------------------------------------------------
+
+class Mortal:
+    """Schaffer's function; ends its process once, where a file does not exist yet, or always."""
+
+    def __init__(self, marker=None):
+        self.marker = marker
+
+    def __call__(self, x):
+        import os
+        from pathlib import Path
+
+        if abs(x[0]) < 4.0 and self.marker is not None and not Path(self.marker).exists():
+            if self.marker != "always":
+                Path(self.marker).touch()
+            os._exit(1)
+        return Schaffer()(x)
+
+
+def test_processes_give_the_same_and_a_lost_one_is_replaced(tmp_path):
+    from railsym.sweep.executors import OwnPool
+
+    alone = pareto_front(schaffer(Schaffer()), population=8, generations=2)
+    pool = OwnPool(2)
+    try:
+        found = pareto_front(schaffer(Mortal(str(tmp_path / "died"))), population=8, generations=2, executor=pool, history=tmp_path / "h")
+        assert (tmp_path / "died").exists() and np.array_equal(found.values, alone.values) and found.failed == 0
+        with pytest.raises(OptimisationError, match="worker was lost.*resume"):
+            pareto_front(schaffer(Mortal("always")), population=8, generations=2, executor=pool)
+        with pytest.raises(OptimisationError, match="cannot be sent"):
+            pareto_front(schaffer(lambda x: {"f1": 0.0, "f2": 0.0}), population=4, generations=1, executor=pool)
+    finally:
+        pool.close()
+
+
+def test_the_message_names_why_an_output_is_missing():
+    problem = Problem([Variable("x", 0, 1)], Schaffer(), [Objective("comfort", "minimise")])
+    with pytest.raises(OptimisationError, match="'comfort' is nan .ending derailed"):
+        problem.checked({"comfort": np.nan, "ending": "derailed"})
+    assert problem.checked({"comfort": 1.0, "other": np.nan, "ending": "completed"}) == {"comfort": 1.0}
+
+
+def test_designs_from_a_study_are_its_cases():
+    """The same vehicle by the optimiser's door, with and without gradients, and by `railsym.critical_speed`."""
+    from railsym.optimise.design import AnalysisDesign, design_of
+    from railsym.sweep import CriticalSpeed, LatinHypercube, Study, Uniform
+
+    study = Study("bogie", CriticalSpeed(), {"contact.conicity": Uniform(0.1, 0.3)}, LatinHypercube(2), set={"primary.stiffness.1": 3e6})
+    names, x = ("anti_yaw_damper.damping", "contact.conicity"), [5e5, 0.25]
+    vehicle = rs.load_vehicle("bogie").replace({"primary.stiffness.1": 3e6, "anti_yaw_damper.damping": 5e5})
+    speed = float(rs.critical_speed(vehicle, 0.25).speed)
+    first = design_of(study, names)
+    assert isinstance(first, SpeedDesign) and first(x)["speed"] == pytest.approx(speed, rel=1e-9)
+    second = AnalysisDesign(study.base(), study.settings, names, {"a.": CriticalSpeed()})
+    assert second(x)["a.speed"] == pytest.approx(speed, rel=1e-9) and second(x)["beyond_range"] == 0.0
+    # a range that ends below the critical speed: at least its upper end, and said so
+    short = design_of(study, names, {"low": CriticalSpeed(speed_range=(5.0, 0.5 * speed))})(x)
+    assert short["low.speed"] == 0.5 * speed and short["beyond_range"] == 1.0
+    with pytest.raises(OptimisationError, match="unstable at .* already"):
+        design_of(study, names, {"": CriticalSpeed(speed_range=(1.2 * speed, 2.0 * speed))})(x)
+    with pytest.raises(OptimisationError, match="anti_yaw_damper.damping"):
+        design_of(study, ("anti_yaw_damper.dampin",))

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from railsym.optimise.errors import OptimisationError
 from railsym.optimise.speeds import SpeedDesign
 
@@ -69,8 +67,7 @@ class AnalysisDesign:
 
     Notes
     -----
-    A vehicle that stays stable over the whole range of speeds has its upper end as ``speed``, and ``beyond_range`` = 1. Outputs that are texts or not
-    finite are left out.
+    A vehicle that stays stable over the whole range of speeds has its upper end as ``speed``, and ``beyond_range`` = 1.
     """
 
     def __init__(self, vehicle, settings, names, analyses):
@@ -104,7 +101,7 @@ class AnalysisDesign:
             found = self._solvers[prefix](Case(self.vehicle, changes, settings))
             found, past = _within(found, analysis)
             beyond = max(beyond, past)
-            outputs |= {prefix + name: float(value) for name, value in found.items() if not isinstance(value, str) and np.isfinite(value)}
+            outputs |= {prefix + name: value if isinstance(value, str) else float(value) for name, value in found.items()}
         return outputs | {"beyond_range": beyond}
 
 

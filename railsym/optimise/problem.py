@@ -148,7 +148,7 @@ class Problem:
     ----------
     variables : tuple of Variable
     evaluate : callable
-        Values (k,) in SI to a dict of outputs (float). Raises where there is no result; importable, so that process pools can carry it. With a method
+        Values (k,) in SI to a dict of outputs (float; texts for messages). Raises where there is no result; importable, so that process pools can carry it. With a method
         ``with_gradient(x)`` that gives (outputs, dict of output to gradient (k,)) the methods that use gradients have them.
     objectives : tuple of Objective
     constraints : tuple of Constraint
@@ -194,7 +194,7 @@ class Problem:
         return np.array([0.5 if v.start is None else v.place(v.start) for v in self.variables])
 
     def checked(self, outputs):
-        """The outputs of a case, where all that are needed are there and finite.
+        """The outputs of a case, where all that are needed are there and finite; texts are left out.
 
         Raises
         ------
@@ -205,9 +205,10 @@ class Problem:
             if name not in outputs:
                 near = get_close_matches(name, outputs, 3, 0.3)
                 raise OptimisationError(f"there is no output {name!r}; there are {', '.join(outputs)}" + (f" (nearest: {near[0]})" if near else ""))
-            if not math.isfinite(outputs[name]):
-                raise OptimisationError(f"output {name!r} is {outputs[name]}")
-        return {name: float(value) for name, value in outputs.items() if math.isfinite(value)}
+            if isinstance(outputs[name], str) or not math.isfinite(outputs[name]):
+                texts = ", ".join(f"{key} {text}" for key, text in outputs.items() if isinstance(text, str) and text)
+                raise OptimisationError(f"output {name!r} is {outputs[name]}" + (f" ({texts})" if texts else ""))
+        return {name: float(value) for name, value in outputs.items() if not isinstance(value, str) and math.isfinite(value)}
 
     def violation(self, outputs):
         """Largest violation of a constraint; 0 where all are kept."""
