@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from railsym import plots
+from railsym.plots.units import shown
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,11 @@ def figures(found):
 def _named(found):
     results = found.results
     return {"output": found.output, "unit": results.unit(found.output)}
+
+
+def _head(found):
+    """Name of the output at the beginning of a sentence."""
+    return found.output[:1].upper() + found.output[1:]
 
 
 def _numeric(results):
@@ -101,12 +107,12 @@ def _study(found):
     made = []
     varied = [k for k in range(len(columns)) if np.ptp(factors[:, k]) > 0.0]
     if len(columns) == len(results.names) == 2 and len(values) >= 4:
-        made.append(Figure("map", f"{found.output} over two factors", "Grey: no value there.", ("study",),
+        made.append(Figure("map", f"{_head(found)} over two factors", "Grey: no value there.", ("study",),
                            lambda: plots.plot_study_map(factors, names, values, units=units, **_named(found))))
     if len(varied) > 2 or len(results.names) != 2:
         made.append(Figure("parallel", "Parallel coordinates", "A line a case (at most 400), coloured by the output on the last axis.", ("study",),
                            lambda: plots.plot_parallel(factors, names, values, units=units, **_named(found))))
-        made.append(Figure("scatter", f"{found.output} against each factor", "With Spearman's rank correlation.", ("study",),
+        made.append(Figure("scatter", f"{_head(found)} against each factor", "With Spearman's rank correlation.", ("study",),
                            lambda: plots.plot_scatter(factors, names, values, units=units, **_named(found))))
     return made
 
@@ -140,7 +146,8 @@ def _design_map(optimum):
     good = [c for c in optimum.cases if not c.failed]
     axes = plots.plot_study_map([c.values for c in good], [v.name for v in variables], [objective.value(c.outputs) for c in good],
                                 units=[v.unit for v in variables], output=objective.name, unit=objective.unit)
-    axes.plot(*optimum.values.values(), "*", color="white", markeredgecolor="black", markersize=14, linestyle="none")
+    best = [shown(v.unit)[0] * optimum.values[v.name] for v in variables]
+    axes.plot(*best, "*", color="white", markeredgecolor="black", markersize=14, linestyle="none", clip_on=False, zorder=10)
     for variable, scale in zip(variables, (axes.set_xscale, axes.set_yscale)):
         scale(variable.scale)
     return axes
@@ -149,7 +156,7 @@ def _design_map(optimum):
 def _before_after(found, one):
     from railsym.campaign.uncertainty import values_of
     from railsym.plots.style import BLACK, BLUE, GREY, new_axes, tidy
-    from railsym.plots.units import labelled, shown
+    from railsym.plots.units import labelled
 
     axes = new_axes(None, size=(6.8, 3.8))[0, 0]
     factor, unit = shown(found.results.unit(found.output))

@@ -126,11 +126,11 @@ def _uncertainty(found, sources):
     if u.form is not None:
         f = u.form
         order = np.argsort(-f.importance)
-        units = found.campaign.study.units
+        units = dict(zip(found.campaign.study.names, found.campaign.study.units))
         parts.append(f"<h3>First-order reliability (FORM) {mark(sources['model'])}</h3>\n<p>P = {number(f.probability, 3)}, reliability index {number(f.beta)}; from the "
                      f"gradient at the medians alone {number(f.mean_value_probability, 3)}. A local estimate: exact where the limit is a plane in the normal "
                      "space; the count of cases above has no such assumption. The most probable parameters at the limit:</p>\n"
-                     + table(["factor", "at the limit", "unit", "importance"], [[f.names[k], float(f.design_point[k]), units[k], float(f.importance[k])] for k in order]))
+                     + table(["factor", "at the limit", "unit", "importance"], [[f.names[k], *_in_unit(units[f.names[k]], f.design_point[k]), float(f.importance[k])] for k in order]))
     if u.tornado is not None:
         parts.append(_tornado(u.tornado, factor, unit, sources["model"]))
     if u.sobol is not None:
@@ -144,7 +144,7 @@ def _uncertainty(found, sources):
 
 def _tornado(t, factor, unit, source):
     computed = t.computed_low if t.computed_low is not None else np.full(len(t.names), np.nan), t.computed_high
-    rows = [[t.names[k], float(t.low[k]), float(t.high[k]), t.units[k], float(factor * t.change_low[k]), float(factor * computed[0][k]),
+    rows = [[t.names[k], *_in_unit(t.units[k], t.low[k], t.high[k]), float(factor * t.change_low[k]), float(factor * computed[0][k]),
              float(factor * t.change_high[k]), float(factor * computed[1][k]), float(100 * t.share[k])] for k in range(len(t.names))]
     return (f"<h3>Tornado {mark(source)}</h3>\n<p>{escape(t.output)} at the medians: {number(factor * t.nominal)} {unit}; first-order standard deviation "
             f"{number(factor * t.deviation, 3)} {unit}.</p>\n"
@@ -171,7 +171,7 @@ def _optimum(found, one, sources):
     rows = []
     for v in best.problem.variables:
         own = float(base.parameters[v.name].value) if v.name in base.parameters else float("nan")
-        rows.append([v.name, own, best.values[v.name], v.low, v.high, v.unit, "at its bound" if v.name in best.at_bounds else ""])
+        rows.append([v.name, *_in_unit(v.unit, own, best.values[v.name], v.low, v.high), "at its bound" if v.name in best.at_bounds else ""])
     text = f"<p>The best design is case {best.number} of the history.</p>\n" + table(["variable", "vehicle", "optimum", "lowest", "highest", "unit", ""], rows)
     outputs = [[name, value] for name, value in best.outputs.items()]
     text += "<p class=soft>Outputs of the optimum, SI:</p>\n" + table(["output", "value"], outputs)
@@ -191,6 +191,12 @@ def _front(front):
     return table(head, rows, sort=True, tall=len(rows) > 15)
 
 
+def _in_unit(unit, *values):
+    """Numbers in the unit they are shown in, and that unit, for cells of a table."""
+    factor, text = shown(unit)
+    return [*(float(factor * value) for value in values), text or "-"]
+
+
 def _with_unit(name, unit):
     text = shown(unit)[1]
     return f"{name}, {text}" if text else name
@@ -204,7 +210,7 @@ def _factors(found, sources):
         text, assumed = provenance.origin(study, name)
         kind = ", ".join(f"{key} {_plain(value)}" for key, value in factor_to_table(factor).items())
         own = study.space.nominal[k] if not study.space.labels(k) else float("nan")
-        rows.append([name, float(own), study.units[k], kind, Raw('<span class="assumed">assumed</span>' if assumed else "given"), text])
+        rows.append([name, *_in_unit(study.units[k], own), kind, Raw('<span class="assumed">assumed</span>' if assumed else "given"), text])
     count, total = provenance.assumed_share(study.base())
     return (f"<p>Values as the vehicle file {mark(sources['vehicle'])} has them, and their distributions as the study file says. Of the {total} quantities of the "
             f"vehicle (places left out) {count} are marked as assumed there: every result rests on them.</p>\n"

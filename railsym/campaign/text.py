@@ -41,8 +41,8 @@ def _uncertainty(found, unit, factor):
                       + ", ".join(f"{found.form.names[k]} ({100 * found.form.importance[k]:.0f} %)" for k in order))
     if found.tornado is not None:
         t = found.tornado
-        rows = [[t.names[k], f"{t.low[k]:.4g}", f"{t.high[k]:.4g}", t.units[k], f"{factor * t.change_low[k]:+.3g}", f"{factor * t.change_high[k]:+.3g}",
-                 f"{100 * t.share[k]:.1f} %"] for k in range(len(t.names))]
+        scale = [shown(u) for u in t.units]
+        rows = [[t.names[k], f"{scale[k][0] * t.low[k]:.4g}", f"{scale[k][0] * t.high[k]:.4g}", scale[k][1] or "-", f"{factor * t.change_low[k]:+.3g}", f"{factor * t.change_high[k]:+.3g}", f"{100 * t.share[k]:.1f} %"] for k in range(len(t.names))]
         blocks.append(f"tornado, from the gradient at the medians ({factor * t.nominal:.4g} {unit}, first-order standard deviation {factor * t.deviation:.3g} "
                       f"{unit})\n" + table(["factor", "low", "high", "unit", f"at low, {unit}", f"at high, {unit}", "variance"], rows, left=(0, 3)))
     if found.sobol is not None:

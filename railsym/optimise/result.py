@@ -9,6 +9,7 @@ import numpy as np
 
 from railsym.optimise.history import Case
 from railsym.optimise.problem import Problem
+from railsym.plots.units import labelled, shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,13 +59,17 @@ class Optimum:
 
     def __str__(self):
         objective = self.problem.objectives[0]
-        lines = [f"{objective.sense} {objective.name}: {self.objective:.6g} {objective.unit} (case {self.number}; {self.method}: {self.message})"]
+        factor, unit = shown(objective.unit)
+        lines = [f"{objective.sense} {objective.name}: {factor * self.objective:.5g} {unit} (case {self.number}; {self.method}: {self.message})"]
         if self.start is not None and not self.start.failed:
-            lines[0] += f"; {objective.value(self.start.outputs):.6g} at the start"
+            lines[0] += f"; {factor * objective.value(self.start.outputs):.5g} at the start"
         for variable in self.problem.variables:
             mark = "  at its bound" if variable.name in self.at_bounds else ""
-            lines.append(f"  {variable.name:44} {self.values[variable.name]:12.6g} {variable.unit:8} in {variable.low:g} to {variable.high:g}{mark}")
+            scale, text = shown(variable.unit)
+            lines.append(f"  {variable.name:44} {scale * self.values[variable.name]:10.5g} {text:8} in {scale * variable.low:.5g} to {scale * variable.high:.5g}{mark}")
         lines += [f"  {c}: {self.outputs[c.output]:.6g}{'' if max(c.violations(self.outputs)) <= 1e-6 else '  BROKEN'}" for c in self.problem.constraints]
+        if self.outputs.get("beyond_range"):
+            lines.append("  stable over the whole range of speeds: the critical speed is at least its upper end")
         return "\n".join([*lines, f"  {self.evaluations} cases, {self.computed} of them computed now, {self.failed} failed"])
 
     def plot(self, **options):
@@ -112,8 +117,9 @@ class ParetoFront:
         return len(self.numbers)
 
     def __str__(self):
-        head = [o.name for o in self.problem.objectives] + list(self.problem.names)
-        rows = np.hstack([self.objectives, self.values])
+        units = [o.unit for o in self.problem.objectives] + [v.unit for v in self.problem.variables]
+        head = [labelled(name, unit) for name, unit in zip([o.name for o in self.problem.objectives] + list(self.problem.names), units)]
+        rows = np.hstack([self.objectives, self.values]) * [shown(unit)[0] for unit in units]
         width = [max(12, len(name)) for name in head]
         lines = [self.message, "  ".join(name.rjust(w) for name, w in zip(head, width))]
         lines += ["  ".join(f"{value:{w}.5g}" for value, w in zip(row, width)) for row in rows]

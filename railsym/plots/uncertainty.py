@@ -46,8 +46,8 @@ def plot_tornado(result, *, count=15, axes=None):
 
 
 def _range(result, k):
-    unit = "" if result.units[k] in ("-", "") else f" {result.units[k]}"
-    return f"{result.low[k]:.4g} to {result.high[k]:.4g}{unit}"
+    factor, unit = shown(result.units[k])
+    return f"{factor * result.low[k]:.4g} to {factor * result.high[k]:.4g} {unit}".rstrip()
 
 
 def plot_sobol(result, *, count=15, axes=None):
@@ -117,7 +117,9 @@ def plot_probability(values, *, probability=None, form=None, output="result", un
     axes.grid(False, axis="x")
     if limit is not None:
         axes.axvline(limit, color=BLACK, linewidth=1.2)
-        axes.text(0.015, 0.97, _probability_text(probability, form, limit, unit), transform=axes.transAxes, va="top", fontsize=8,
+        left = limit > np.median(values)      # the side where the bars are low
+        axes.text(0.015 if left else 0.985, 0.97, _probability_text(probability, form, limit, unit), transform=axes.transAxes, va="top",
+                  ha="left" if left else "right", multialignment="left", fontsize=8,
                   bbox={"facecolor": "white", "edgecolor": PALE, "alpha": 0.9, "boxstyle": "round,pad=0.35"})
     return axes
 

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Units that drawings and reports show: speeds in km/h, the rest as it is."""
+"""Units that drawings and reports of studies show."""
+
+
+_SHOWN = {"m/s": (3.6, "km/h"), "N/m": (1e-6, "MN/m"), "N*s/m": (1e-3, "kN*s/m"), "N*m/rad": (1e-6, "MN*m/rad"), "N*m*s/rad": (1e-3, "kN*m*s/rad"),
+          "-": (1.0, "")}
 
 
 def shown(unit):
-    """Factor and text of the unit that a result is shown in.
+    """Factor and text of the unit that a number is shown in: speeds in km/h, stiffnesses in MN/m, dampings in kN*s/m, the rest as it is.
 
     Parameters
     ----------
@@ -14,7 +18,7 @@ def shown(unit):
     -------
     (float, str)
     """
-    return (3.6, "km/h") if unit == "m/s" else (1.0, "" if unit == "-" else unit)
+    return _SHOWN.get(unit, (1.0, unit))
 
 
 def labelled(name, unit):
