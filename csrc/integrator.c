@@ -207,7 +207,7 @@ void rs_integrator_travel(rs_integrator *it, rs_travel *travel)
 }
 
 /* The scheme's accelerations, and rates of internal states, belong (am - af) h before the end of the step. */
-static void at_end(const rs_integrator *it, double *u, double *a)
+void rs_integrator_at_end(const rs_integrator *it, double *u, double *a)
 {
 	double ahead = it->am - it->af;
 	memcpy(u, it->u, (size_t)it->second * sizeof *u);
@@ -221,7 +221,7 @@ static void at_end(const rs_integrator *it, double *u, double *a)
 
 int rs_integrator_look(rs_integrator *it)
 {
-	at_end(it, it->sample_u, it->sample_a);
+	rs_integrator_at_end(it, it->sample_u, it->sample_a);
 	int status = rs_integrator_move(it, it->report.time);
 	rs_integrator_place(it, it->q, it->sample_u, it->sample_a);
 	return status ? status : rs_integrator_evaluate(it, NULL, 1, 0);
@@ -230,7 +230,7 @@ int rs_integrator_look(rs_integrator *it)
 int rs_integrator_sample(rs_integrator *it, double *row)
 {
 	int status = RS_OK, captured = 0;
-	at_end(it, it->sample_u, it->sample_a);
+	rs_integrator_at_end(it, it->sample_u, it->sample_a);
 	if (it->looks) {
 		it->system->capturing = 1;
 		status = rs_integrator_look(it);
@@ -258,7 +258,7 @@ static int controlled(rs_integrator *it)
 {
 	if (!it->controller || it->report.steps % it->every)
 		return RS_OK;
-	at_end(it, it->sample_u, it->sample_a);
+	rs_integrator_at_end(it, it->sample_u, it->sample_a);
 	return it->controller(it->context, it->report.time, it->q, it->sample_u, it->sample_a) ? RS_STOPPED : RS_OK;
 }
 
@@ -282,7 +282,7 @@ int rs_integrator_run(rs_integrator *it, int steps, int every, double *samples, 
 void rs_integrator_state(const rs_integrator *it, double *q, double *u, double *a)
 {
 	memcpy(q, it->q, (size_t)it->n * sizeof *q);
-	at_end(it, u, a);
+	rs_integrator_at_end(it, u, a);
 }
 
 const rs_run_report *rs_integrator_report(const rs_integrator *it)

@@ -40,6 +40,14 @@
  *   Status    RS_OK; RS_NOT_CONVERGED, RS_NOT_FINITE, RS_SINGULAR and those of the track and the wheels: the state
  *             is that of the end of the last good step, rs_integrator_report says more. RS_STOPPED by the controller.
  *   Notes     No allocation. The same steps in one run or in ten: the same bytes.
+ * rs_integrator_look     everything is evaluated at the end of the last step: laws with a `seen` have seen it, body inputs are of that time
+ * rs_integrator_inertial what an inertial unit feels at the end of the last step
+ *   Given     kernel, instance   of a body
+ *             arm        3, m, of the unit from the body's centre at the design position, axes of the body
+ *   Returned  felt       6: acceleration less gravity (m/s^2) and angular velocity (rad/s), axes of the body; of a wheelset those of
+ *                        its axle, which does not spin
+ *   Status    RS_OK, RS_BAD_INDEX, those of the track
+ *   Notes     No allocation. A controller in C may call both.
  * rs_integrator_residual r(q, u, a) with holds, forces, wheels and track at a time; n
  * rs_integrator_solve    S x = b with the pencil at a state, by blocks: to compare with other solvers; the
  *                        integrator must be started again before it runs
@@ -87,6 +95,9 @@ struct rs_integrator {
 
 /* Accelerations and rates of internal states that fit q, u and s just after a time (integrator_start.c). */
 int rs_integrator_begin(rs_integrator *integrator, double time);
+
+/* Rates and accelerations (n each) at the end of the last step. */
+void rs_integrator_at_end(const rs_integrator *integrator, double *u, double *a);
 
 /* One step of integrator->step, in pieces at kinks (integrator_step.c). */
 int rs_integrator_one_step(rs_integrator *integrator);

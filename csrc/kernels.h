@@ -12,4 +12,7 @@
  * may be. S may be NULL. */
 void rs_kernel_call(int kernel, int used, const double *in, const rs_law *const *laws, const double *seed, double *r, double *S);
 
+/* Slot of the input of that name, -1 for none. */
+int rs_kernel_slot(const rs_kernel_info *info, const char *name);
+
 #endif

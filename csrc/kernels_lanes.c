@@ -34,6 +34,14 @@ const rs_kernel_info *rs_kernel_describe(int kernel)
 	return kernel < 0 || kernel >= KERNELS ? NULL : kernel_info + kernel;
 }
 
+int rs_kernel_slot(const rs_kernel_info *info, const char *name)
+{
+	for (int slot = 0; slot < info->inputs; slot++)
+		if (!strcmp(info->input_names[slot], name))
+			return slot;
+	return -1;
+}
+
 int rs_kernel_lanes(void)
 {
 	return RS_LANES;

@@ -68,14 +68,6 @@ void rs_travel_free(rs_travel *travel)
 	free(travel);
 }
 
-static int slot_of(const rs_kernel_info *info, const char *name)
-{
-	for (int slot = 0; slot < info->inputs; slot++)
-		if (!strcmp(info->input_names[slot], name))
-			return slot;
-	return -1;
-}
-
 /* Where an input of an instance is; others of the lane follow rs_kernel_lanes() apart. */
 static double *input_of(const rs_model *model, int kernel, int instance, int slot)
 {
@@ -86,7 +78,7 @@ static double *input_of(const rs_model *model, int kernel, int instance, int slo
 int rs_travel_bodies(rs_travel *travel, rs_model *model, int kernel, const int *frame)
 {
 	const rs_kernel_info *info = rs_kernel_describe(kernel);
-	int slot = info ? slot_of(info, "V") : -1;
+	int slot = info ? rs_kernel_slot(info, "V") : -1;
 	if (slot < 0)
 		return RS_BAD_INDEX;
 	int count = model->groups[kernel].count;
@@ -98,7 +90,7 @@ int rs_travel_bodies(rs_travel *travel, rs_model *model, int kernel, const int *
 	for (int k = 0; k < count; k++) {
 		if (frame[k] < 0 || frame[k] >= travel->frames)
 			return RS_BAD_INDEX;
-		int inputs = slot_of(info, "dV") >= 0 ? 11 : 4;
+		int inputs = rs_kernel_slot(info, "dV") >= 0 ? 11 : 4;
 		body[travel->bodies++] = (rs_moved_body){frame[k], inputs, input_of(model, kernel, k, slot)};
 	}
 	return RS_OK;
@@ -108,7 +100,7 @@ int rs_travel_pairs(rs_travel *travel, rs_model *model, int kernel, int count, c
                     const double *offsets)
 {
 	const rs_kernel_info *info = rs_kernel_describe(kernel);
-	int slot = info ? slot_of(info, "D0") : -1;
+	int slot = info ? rs_kernel_slot(info, "D0") : -1;
 	if (slot < 0)
 		return RS_BAD_INDEX;
 	rs_moved_pair *pair = realloc(travel->pair, (size_t)(travel->pairs + count + 1) * sizeof *pair);

@@ -166,6 +166,10 @@ class Laws:
         """Command (N or m) of one actuator."""
         return self.array[number].command
 
+    def lags(self, number):
+        """Whether an actuator lags behind its command."""
+        return self.array[number].lag > 0.0
+
     def set_fault(self, number, fault):
         """Set the fault, one of FAULTS, of one actuator."""
         self.array[number].fault = FAULTS.index(fault)

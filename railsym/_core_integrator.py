@@ -118,6 +118,10 @@ class Integrator:
         """Evaluate everything at the present state, so that laws have seen it; returns the status."""
         return lib.rs_integrator_look(self._pointer)
 
+    def inertial(self, kernel, instance, arm, felt):
+        """Specific force (m/s^2) and angular velocity (rad/s) of a point of a body, into ``felt`` (6,); ``arm`` (3,) in m. Returns the status."""
+        return lib.rs_integrator_inertial(self._pointer, kernel, instance, _doubles(arm), _doubles(felt))
+
     def sample(self):
         """Channels at the present state, shape (channels,), and the status."""
         row = np.empty(max(self.channels, 1))

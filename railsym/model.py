@@ -69,6 +69,15 @@ class Model:
                 start = np.array([[self.topology.start[b.name]] for b in bodies])
                 self._add(name, _body_columns(bodies), start + np.arange(_core.kernels()[name].coordinates))
 
+    def body_instances(self):
+        """Name of each body -> number of its kernel, number of its instance, design position (3,) in m."""
+        count, found = dict.fromkeys(_BODY_KERNELS, 0), {}
+        for body in self.vehicle.bodies:
+            name = body.kind + ("_with_axleboxes" if body.axleboxes else "")
+            found[body.name] = _core.kernels()[name].number, count[name], body.position
+            count[name] += 1
+        return found
+
     def _add_elements(self):
         split = {"bushing": [], "line": [], "axis": []}
         for element in self.vehicle.elements:

@@ -231,6 +231,9 @@ def build_elements(group, values, curves):
         If an element acts along the line of two points that are not apart, or a curve does not fit its place.
     """
     parameters = _element_parameters(group, values, curves)
+    if group.type == "actuator" and parameters["rate_limit"] < np.inf and parameters["lag"] == 0.0:
+        raise Problem(f"{group.name}.rate_limit", parameters["rate_limit"], "what an actuator follows is limited in rate only where it lags behind "
+                      f"its command: give {group.name}.lag above 0 s too")
     orientation = values.get(f"{group.name}.orientation")
     axes = _IDENTITY
     if orientation is not None:

@@ -7,7 +7,6 @@ import numpy as np
 
 from railsym import _core
 from railsym.errors import SimulationError
-from railsym.simulation.markers import accelerometer, frame_motion, gyroscope
 from railsym.vehicle_checks import unknown
 
 
@@ -23,7 +22,7 @@ class Controls:
     def __init__(self, simulation):
         self._run, self._parts = simulation, simulation.parts
         self._state = self._looked = None
-        self._bodies = {body.name: body for body in self._parts.vehicle.bodies}
+        self._bodies = self._parts.model.body_instances()
         self._laws = {element.name: k for k, element in enumerate(self._parts.model.laws)}
         self._lines = sum(element.axis is None for element in self._parts.model.laws)
 
@@ -72,7 +71,7 @@ class Controls:
         table.set_command(number, float(value))
 
     def fault(self, element, kind):
-        """Let an actuator fail from now on; what and when stands in the run's ``info.extra["faults"]``.
+        """Let an actuator fail from now on; what, when, and its length (m) and force (N) then stand in the run's ``info.extra["faults"]``.
 
         Parameters
         ----------
@@ -89,8 +88,12 @@ class Controls:
         table, number = self._actuator(element, "fault")
         if kind not in _core.FAULTS:
             raise SimulationError(f"fault of {element!r}: {kind!r} is {unknown(kind, _core.FAULTS, 'faults')}")
+        if kind == "stuck" and not table.lags(number):
+            raise SimulationError(f"fault of {element!r}: an actuator without a lag follows its command at once and has nothing to be stuck at; "
+                                  "give it a lag (s) in the vehicle file, or command what it is to hold")
+        self._run.faults.append({"time": self.time, "element": element, "fault": kind, "length": self.length(element),
+                                 "force": self.actuator_force(element)})
         table.set_fault(number, kind)
-        self._run.faults.append({"time": self.time, "element": element, "fault": kind})
 
     def length(self, element):
         """By how much an actuator is longer than at the design position, m."""
@@ -143,18 +146,11 @@ class Controls:
         """
         if body not in self._bodies:
             raise SimulationError(f"imu on {body!r}: {unknown(body, self._bodies, 'bodies')}")
-        at = self._bodies[body]
-        arm = np.zeros(3) if position is None else np.asarray(position, dtype=float) - at.position
-        first = self._parts.model.topology.start[body]
-        state = np.array(self._all())[:, first:first + 6, None]
-        if at.kind != "rigid_body":
-            state[:, 5] = 0.0
-        parts, run = self._parts, np.array([self.time])
-        frame = frame_motion(parts.track, parts.speed, run, at.position[0], parts.vehicle.gravity)
-        offset = np.array([0.0, *at.position[1:]])
-        force = accelerometer(*state, arm, offset, frame, parts.vehicle.gravity)[0] - [0.0, 0.0, parts.vehicle.gravity]
-        return force, gyroscope(*state[:2], frame)[0]
-
-    def force(self, coordinate, value):
-        """Set the generalised force (N or N m) applied to a coordinate, until it is set again."""
-        self._parts.integrator.force[self._parts.number(coordinate, "controller")] = float(value)
+        kernel, instance, centre = self._bodies[body]
+        point = centre if position is None else np.asarray(position, dtype=float)
+        if point.shape != (3,) or not point @ point < np.inf:
+            raise SimulationError(f"imu on {body!r}: position {position} must be three finite numbers (m), in vehicle coordinates")
+        felt = np.empty(6)
+        if self._parts.integrator.inertial(kernel, instance, point - centre, felt):
+            raise SimulationError(f"imu on {body!r}: at t = {self.time:.6g} s the body is beyond the end of the track")
+        return felt[:3], felt[3:]

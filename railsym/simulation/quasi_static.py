@@ -22,6 +22,7 @@ _STEP = 1e-7       # m or rad; 100 N on the stiffest contact, 1e-8 of which is r
 _SPIN_STEP = 1e-5  # rad/s
 _FORCE = 1e-7      # of the vehicle's weight: N, and N m on 1 m, that may be left over in one equation
 _ITERATIONS = 40
+_SHARE = 1.0 / 64.0  # of the commands, first step: small against the way from which on an actuator is at its limit
 
 
 class _Balance:
@@ -77,12 +78,12 @@ class _Balance:
         raise CoreError("no step of Newton's iteration makes the residual smaller")
 
 
-def quasi_static(vehicle, *, speed, track, places, contact="linear", channels=None, markers=None, **forces):
+def quasi_static(vehicle, *, speed, track, places, contact="linear", channels=None, markers=None, commands=None, **forces):
     """Equilibria of a vehicle along a track.
 
     Parameters
     ----------
-    vehicle, speed, contact, channels, markers, forces
+    vehicle, speed, contact, channels, markers, commands, forces
         As `Simulation`; the speed is constant, and irregularities of the track are as large as they are there.
     track : railsym.Track
     places : array_like (k,)
@@ -102,16 +103,17 @@ def quasi_static(vehicle, *, speed, track, places, contact="linear", channels=No
         With the place from which on no equilibrium was found: the vehicle cannot run there, or a wheel leaves its contact table.
     """
     places = np.atleast_1d(np.asarray(places, dtype=float))
-    simulation = Simulation(vehicle, speed=speed, track=track, contact=contact, channels=channels, markers=markers, start=float(places[0]), **forces)
+    simulation = Simulation(vehicle, speed=speed, track=track, contact=contact, channels=channels, markers=markers,
+                            start=float(places[0]), **forces)
     times, rows = (places - places[0]) / float(np.asarray(speed)), []
-    for time, (q, u) in zip(times, _equilibria(simulation, places, float(speed)), strict=True):
+    for time, (q, u) in zip(times, _equilibria(simulation, places, float(speed), commands), strict=True):
         simulation.parts.integrator.start(time, q, u)
         rows.append(simulation.recorder.values(np.array([time]), simulation.parts.integrator.sample()[0][None])[0])
     info = simulation.info.ended(Ending("completed", time=float(times[-1]), distance=float(places[-1])), "quasi-static equilibria along the track")
     return Run(times, np.array(rows), simulation.recorder.channels, info)
 
 
-def steady_state(vehicle, *, speed, track, place, contact="linear", begin=None, **forces):
+def steady_state(vehicle, *, speed, track, place, contact="linear", begin=None, commands=None, **forces):
     """Coordinates and rates of the equilibrium at one place: what a run that begins in a curve starts from.
 
         state = rs.steady_state(vehicle, speed=25.0, track=curve, place=120.0, contact=pair)
@@ -119,7 +121,7 @@ def steady_state(vehicle, *, speed, track, place, contact="linear", begin=None, 
 
     Parameters
     ----------
-    vehicle, speed, track, contact, forces
+    vehicle, speed, track, contact, commands, forces
         As `quasi_static`.
     place : float
         m, arc length of the vehicle's centre.
@@ -140,21 +142,42 @@ def steady_state(vehicle, *, speed, track, place, contact="linear", begin=None, 
     foremost = max((body.position[0] for body in vehicle.bodies), default=0.0)
     places = np.array([-foremost if begin is None else begin, place], dtype=float)
     simulation = Simulation(vehicle, speed=speed, track=track, contact=contact, start=float(places[0]), **forces)
-    return list(_equilibria(simulation, places, float(speed)))[-1]
+    return list(_equilibria(simulation, places, float(speed), commands))[-1]
 
 
-def _equilibria(simulation, places, speed):
-    """q and u at each place, one after the other."""
+def _equilibria(simulation, places, speed, commands):
+    """q and u at each place, one after the other, with actuators at their commands."""
     parts, times = simulation.parts, (places - places[0]) / speed
     parts.check_track(float(times[-1]))
     parts.integrator._travel.set_steady()
     balance = _Balance(parts)
     q, u = parts.start()
     x, now = np.where(balance.spin, u, q), 0.0
+    if commands:
+        x = _commanded(balance, simulation, x, commands)
     for time in times:
         x = _continued(balance, x, now, time, places[0], speed)
         now = time
         yield balance.state(x)
+
+
+def _commanded(balance, simulation, x, commands):
+    """Solution at the first place with all commands, from small shares of them: each step begins where the last one points, since an actuator
+    that is far from its command is at its limit, where its force tells nothing of the way."""
+    at, step, slope = 0.0, _SHARE, np.zeros_like(x)
+    while at < 1.0:
+        step = min(step, 1.0 - at)
+        guess = x + step * slope
+        simulation.command({name: (at + step) * value for name, value in commands.items()}, guess)
+        found = balance.solve(0.0, guess)
+        if found is None:
+            step *= 0.5
+            if step < _SHARE / 256.0:
+                raise ConvergenceError(f"no equilibrium was found beyond {100.0 * at:.4g} % of the commands: {commands}; an actuator cannot reach its "
+                                       "own (force limit, stop), or the vehicle cannot stand so")
+            continue
+        slope, x, at, step = (found - x) / step, found, at + step, 2.0 * step
+    return x
 
 
 def _continued(balance, x, start, end, first, speed):

@@ -43,6 +43,8 @@ class Simulation:
     start : float, optional
         m, arc length of the vehicle's centre at t = 0. Without it the foremost body stands at s = 0: behind it the track goes on
         as it begins, without irregularities.
+    commands : dict of str to float, optional
+        Commands of actuators from the start, m or N, as `Controls.command` sets them; actuators with a lag begin at them.
     initial : dict of str to float, or (q, u), optional
         ``{"wheelset1.y": 3e-3, "car.y.rate": 0.1}``, SI; the rest of the vehicle rolls at its design position.
     channels : str or sequence of str, optional
@@ -67,7 +69,7 @@ class Simulation:
     """
 
     def __init__(self, vehicle, *, speed, track=None, contact="linear", dt=1e-3, start=None, initial=None, channels=None, rate=None,
-                 markers=None, rho=RHO, tolerance=TOLERANCE, drive="held", **forces):
+                 markers=None, rho=RHO, tolerance=TOLERANCE, drive="held", commands=None, **forces):
         from railsym.contact import LinearContact
 
         _check_numbers(dt=dt, rho=rho, tolerance=tolerance)
@@ -81,12 +83,22 @@ class Simulation:
         self.dt, self.ending = float(dt), Ending("running")
         integrator = self.parts.integrator
         integrator.set_channels(self.recorder.raw)
-        status = integrator.start(0.0, *self.parts.start(initial))
+        q, u = self.parts.start(initial)
+        self.command(commands or {}, q)
+        status = integrator.start(0.0, q, u)
         row, sampled = integrator.sample()
         if status or sampled:
             self.ending = ending_of(self.parts, status or sampled)
             raise SimulationError(f"the run cannot begin: {self.ending}")
         self._times, self._values, self._waiting = [np.zeros(1)], [self.recorder.values(np.zeros(1), row[None])], []
+
+    def command(self, commands, q):
+        """Set commands of actuators, dict of m or N, and in the coordinates q (n,) the states of those that have followed them."""
+        controls, internal = Controls(self), self.parts.model.topology.internal
+        for element, value in commands.items():
+            controls.command(element, value)
+            if element in internal:
+                q[internal[element]] = value
 
     @property
     def time(self):
@@ -234,6 +246,7 @@ def simulate(vehicle, *, speed, duration, controllers=(), progress=False, save=N
             writer.write(simulation._times[0], simulation._values[0])
         simulation.run(duration, controllers=controllers, progress=progress, writer=writer)
         if writer is not None:
+            writer.info = simulation.info  # with what happened on the way
             writer.finish(simulation.ending, str(simulation.ending))
     return simulation.result()
 
