@@ -259,7 +259,10 @@ static int controlled(rs_integrator *it)
 	if (!it->controller || it->report.steps % it->every)
 		return RS_OK;
 	rs_integrator_at_end(it, it->sample_u, it->sample_a);
-	return it->controller(it->context, it->report.time, it->q, it->sample_u, it->sample_a) ? RS_STOPPED : RS_OK;
+	if (it->controller(it->context, it->report.time, it->q, it->sample_u, it->sample_a))
+		return RS_STOPPED;
+	rs_integrator_follow(it);
+	return RS_OK;
 }
 
 int rs_integrator_run(rs_integrator *it, int steps, int every, double *samples, int *sampled)

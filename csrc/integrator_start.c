@@ -39,6 +39,27 @@ static int damper_rate(const rs_law *law, double force, double *rate)
 	return RS_NOT_CONVERGED;
 }
 
+/* Rate of what an actuator follows: the root of its own equation. */
+static double followed(const rs_law *law, double s)
+{
+	RS_NAME(law_value) at = {0};
+	RS_NAME(follow)(law, 1.0, s, 0.0, &at);
+	return -at.g / at.g_w;
+}
+
+void rs_integrator_follow(rs_integrator *it)
+{
+	for (int kernel = 0; kernel < rs_kernel_count(); kernel++) {
+		const rs_group *group = it->system->model->groups + kernel;
+		int size = rs_kernel_describe(kernel)->coordinates, internal = it->system->scatter[kernel].internal;
+		for (int k = 0; internal >= 0 && k < group->count; k++) {
+			int own = group->index[k * size + internal];
+			if (own >= 0 && group->laws[k]->kind != RS_LAW_MAXWELL)
+				it->u[own] = it->before[own] = followed(group->laws[k], it->q[own]);
+		}
+	}
+}
+
 static int start_internal(rs_integrator *it, int kernel)
 {
 	const rs_scatter *scatter = it->system->scatter + kernel;
@@ -53,7 +74,7 @@ static int start_internal(rs_integrator *it, int kernel)
 		if (law->kind == RS_LAW_MAXWELL)
 			status = damper_rate(law, damper_force(law, 0.0, &slope) - g, it->u + own);
 		else
-			it->u[own] = -g / (law->lag * (law->kind == RS_LAW_ACTUATOR_LENGTH ? law->stiffness : 1.0));
+			it->u[own] = followed(law, it->q[own]);
 		if (status)
 			it->report.coordinate = own;
 	}

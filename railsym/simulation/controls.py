@@ -154,3 +154,7 @@ class Controls:
         if self._parts.integrator.inertial(kernel, instance, point - centre, felt):
             raise SimulationError(f"imu on {body!r}: at t = {self.time:.6g} s the body is beyond the end of the track")
         return felt[:3], felt[3:]
+
+    def force(self, coordinate, value):
+        """Set the generalised force (N or N m) applied to a coordinate, until it is set again."""
+        self._parts.integrator.force[self._parts.number(coordinate, "controller")] = float(value)

@@ -164,6 +164,7 @@ class Simulation:
                     for function, period in calls:
                         if done % period == 0:
                             function(controls)
+                            self.parts.integrator.follow()
                     count = min(left, block, *(period - done % period for _, period in calls))
                     self._advance(count)
                     if sum(len(times) for times, _ in self._waiting) >= _ENOUGH:

@@ -67,10 +67,10 @@ class Layout:
         self.names, self.start, self._attachments = [], {}, {"track": ((), np.zeros(3))}
         for body in vehicle.bodies:
             self._add_body(body)
-        self.maxwell = {}
+        self.states = {}
         for element in vehicle.elements:
-            if element.type == "maxwell":
-                self.maxwell[element.name] = len(self.names)
+            if element.type == "maxwell" or element.parameters.get("lag", 0.0) > 0.0:
+                self.states[element.name] = len(self.names)
                 self.names.append(element.name + ".s")
 
     def _add_body(self, body):
@@ -159,13 +159,23 @@ def _add_elements(placed, layout, damping, stiffness):
         law, gradient = item.law, item.gradient
         if not law.series:
             damping += gradient.T @ (law.damping[:, None] * gradient)
+            if item.element.name in layout.states:
+                _add_follower(item, layout.states[item.element.name], damping, stiffness)
             continue
         # f = k (e - s), D s' = k (e - s)
-        state = layout.maxwell[item.element.name]
+        state = layout.states[item.element.name]
         row = gradient[0].copy()
         row[state] -= 1.0
         stiffness += law.stiffness[0] * np.outer(row, row)
         damping[state, state] += law.damping[0]
+
+
+def _add_follower(item, state, damping, stiffness):
+    """An actuator that follows its command, here zero: f = k (e - s) + c e', with k (T s' + s) = 0 for the state s."""
+    k, lag = item.law.stiffness[0], item.element.parameters["lag"]
+    stiffness[:, state] -= k * item.gradient[0]
+    stiffness[state, state] += k
+    damping[state, state] += k * lag
 
 
 def _add_bodies(vehicle, layout, mass, damping, stiffness, speed, preload):
@@ -229,6 +239,6 @@ def independent_model(vehicle, wheels, speed, preload=True, terms=ContactTerms()
             stiffness += item.geometric_stiffness(np.atleast_1d(forces[item.element.name]), n)
     if wheels is not None:
         _add_wheels(vehicle, layout, wheels, speed, terms, damping, stiffness)
-    first_order = np.array([name in {m + ".s" for m in layout.maxwell} for name in layout.names])
+    first_order = np.array([name in {m + ".s" for m in layout.states} for name in layout.names])
     cyclic = np.array([name.endswith(".spin") for name in layout.names])
     return IndependentModel(tuple(layout.names), mass, damping, stiffness, loads, forces, first_order, cyclic)
