@@ -63,23 +63,6 @@ def accelerometer(q, u, a, arm, offset, frame, gravity):
     return np.einsum("nji,nj->ni", turn, second - frame["gravity"]) + [0.0, 0.0, gravity]
 
 
-def gyroscope(q, u, frame):
-    """Angular velocity of a body against the inertial frame, body axes.
-
-    Parameters
-    ----------
-    q, u, frame
-        As `accelerometer`.
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        rad/s
-    """
-    omega, _ = _turning(q[3:], u[3:], np.zeros_like(u[3:]))
-    return np.einsum("nji,nj->ni", rotations(q[3:]), omega + frame["w"])
-
-
 def frame_motion(track, speed, time, ahead, gravity):
     """Motion of a track frame at times (n,): V, dV (n,) and w, dw, gravity (n, 3); ``ahead``: m ahead of the vehicle's centre."""
     n = len(time)
