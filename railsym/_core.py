@@ -35,7 +35,7 @@ _LAW_NUMBERS = "preload", "stiffness", "damping", "clearance", "command", "lag",
 
 def _check(status, what):
     if status != lib.RS_OK:
-        raise CoreError(f"{what}: {_MEANING.get(status, f'unknown status {status}')}")
+        raise CoreError(f"{what}: {_MEANING.get(status, f'unknown status {status}')}", status)
 
 
 def _doubles(array):

@@ -11,6 +11,7 @@ import sys
 
 from railsym.cli_arguments import missing_vehicle, vehicle_first
 from railsym.cli_bifurcation_parser import add_bifurcation
+from railsym.cli_curving import add_curving
 from railsym.cli_damper import add_damper
 from railsym.cli_pair import add_contact
 from railsym.cli_profiles import add_parser as add_profiles
@@ -20,7 +21,7 @@ from railsym.cli_switch import add_switch
 from railsym.cli_values import CommandError, criterion, numbers
 from railsym.errors import RailsymError
 
-_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate", "switch", "bifurcation", "study")
+_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate", "switch", "bifurcation", "curving", "study")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -124,6 +125,7 @@ def _parser():
     add_switch(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_switch", "run"))
     add_bifurcation(commands, _typed, _add_output).set_defaults(run=_run("cli_bifurcation", "run"))
     add_study(commands, _typed, _add_output).set_defaults(run=_run("cli_study", "run"))
+    add_curving(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_curving", "run"))
     return parser, commands
 
 

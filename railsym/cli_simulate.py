@@ -27,7 +27,8 @@ def add_simulate(commands, typed, add_vehicle, add_output):
         "simulate", help="a vehicle in motion over a track",
         description="Transient simulation of a vehicle over a track: largest wheel-rail forces and accelerations, running stability, how the run ended.")
     add_vehicle(command)
-    command.add_argument("--speed", nargs="+", required=True, metavar="SPEED", help="200km/h or 55m/s")
+    command.add_argument("--speed", nargs="+", required=True, metavar="SPEED",
+                         help="200km/h or 55m/s; or a file of speed against place or time (.csv, .toml)")
     command.add_argument("--track", metavar="TRACK", help="name of a track that comes along or a TOML file (default: straight and level)")
     command.add_argument("--duration", type=typed(quantity, "s", "duration"), metavar="TIME",
                          help="such as 10s (default: to the end of --track; 10s without it)")
@@ -42,7 +43,7 @@ def add_simulate(commands, typed, add_vehicle, add_output):
     command.add_argument("--rate", type=typed(quantity, "Hz", "rate"), metavar="RATE", help="samples in a second (default 200Hz)")
     command.add_argument("--channels", nargs="+", metavar="NAME",
                          help="channels and patterns that are drawn, and saved beside the usual ones; list shows all")
-    command.add_argument("--save", metavar="FILE", help="save the run: .nc (written as it goes), .csv or .mat")
+    command.add_argument("--save", metavar="FILE", help="save the run: .nc (written as it goes, not kept in memory), .csv or .mat")
     command.add_argument("--animate", metavar="FILE", help="animation from above and behind: .gif, or .mp4 with ffmpeg")
     command.add_argument("--animate-range", metavar="RANGE", help="part that is animated, such as 2:4s (default: the last 2 s)")
     command.add_argument("--animate-factor", type=float, metavar="NUMBER", help="exaggeration of motions (default: so that they are seen)")
@@ -59,12 +60,10 @@ def run(options):
 
     _check_files(options)
     vehicle = _configured(load_vehicle(options.vehicle), options.configuration)
-    speed = speeds(" ".join(options.speed))
-    if len(speed) != 1:
-        raise CommandError(f"--speed {' '.join(options.speed)}: a run has one speed")
-    duration, track = duration_and_track(options, vehicle, float(speed[0]))
+    speed, shown = _speed(" ".join(options.speed))
+    duration, track = duration_and_track(options, vehicle, speed)
     contact, more, text = _contact(options, vehicle)
-    arguments = {"speed": float(speed[0]), "track": track, "contact": contact, "dt": options.step, "rate": options.rate, **more}
+    arguments = {"speed": speed, "track": track, "contact": contact, "dt": options.step, "rate": options.rate, **more}
     simulation = Simulation(vehicle, channels="s", **arguments)
     if options.channels == ["list"]:
         say("\n".join(f"{name}  [{recipe.channel.unit}]  {recipe.channel.description}" for name, recipe in simulation.available.items()))
@@ -72,7 +71,7 @@ def run(options):
     found = _simulated(simulation, options, vehicle, duration, arguments)
     if options.json != "-":
         name = f"{vehicle.name}, {vehicle.configuration}" if vehicle.configuration else vehicle.name
-        say(f"{name}: {KMH * speed[0]:.4g} km/h, track {getattr(track, 'name', 'straight')}{_irregular(options)}, {text}")
+        say(f"{name}: {shown}, track {getattr(track, 'name', 'straight')}{_irregular(options)}, {text}")
         say(run_table(found))
     if options.json:
         write_json(finite(as_data(found)), options.json)
@@ -82,6 +81,18 @@ def run(options):
         _animate(found, vehicle, track, options)
 
 
+def _speed(text):
+    """Speed as `Simulation` takes it, from ``200km/h`` or the name of a file, and in words."""
+    if Path(text).suffix.lower() in (".csv", ".toml"):
+        from railsym.simulation import load_speed
+
+        return load_speed(text), f"speed of {Path(text).name}"
+    found = speeds(text)
+    if len(found) != 1:
+        raise CommandError(f"--speed {text}: a run has one speed, or a file of speed against place or time (.csv, .toml)")
+    return float(found[0]), f"{KMH * found[0]:.4g} km/h"
+
+
 def _simulated(simulation, options, vehicle, duration, arguments):
     """The run, saved where asked."""
     from railsym.simulation import simulate
@@ -89,7 +100,8 @@ def _simulated(simulation, options, vehicle, duration, arguments):
 
     wanted = _recorded(simulation.available, options, vehicle, DEFAULT)
     streamed = options.save if options.save and Path(options.save).suffix.lower() == ".nc" else None
-    found = simulate(vehicle, duration=duration, channels=wanted, progress=sys.stderr.isatty(), save=streamed, **arguments)
+    found = simulate(vehicle, duration=duration, channels=wanted, progress=sys.stderr.isatty(), save=streamed, keep="file" if streamed else "memory",
+                     **arguments)
     if options.save and not streamed:
         try:
             getattr(found, _FORMATS[Path(options.save).suffix.lower()])(options.save)
@@ -116,31 +128,42 @@ def _drawn(found, options):
 
 
 def duration_and_track(options, vehicle, speed):
-    """Duration (s), and the Track or None.
+    """Duration (s), and the Track or None; ``speed`` as `Simulation` takes it.
 
     Raises
     ------
     CommandError
         A run that is not above 0 s, or longer than the track.
     """
+    from railsym.simulation import SpeedProfile
     from railsym.track import Track, load_track
 
     places = [body.position[0] for body in vehicle.bodies]
     ahead = max(places, default=0.0)
+    profile = SpeedProfile.of(speed, -ahead)
     if options.duration is not None and not 0.0 < options.duration < np.inf:
         raise CommandError(f"--duration {options.duration:g} s: a time above 0 s is needed")
     track = load_track(options.track) if options.track else None
     if track is None:
         duration = _DURATION if options.duration is None else options.duration
-        track = Track.straight(ahead + speed * duration + _AHEAD) if options.irregularity else None
+        track = Track.straight(ahead + _way(profile, duration) + _AHEAD) if options.irregularity else None
     else:
         # the foremost body begins at s = 0, and stays within the track by a step
-        longest = options.step * (np.ceil(track.length / speed / options.step - 1e-6) - 1.0)
+        longest = options.step * (np.ceil(float(profile.when(track.length - ahead)) / options.step - 1e-6) - 1.0)
         duration = longest if options.duration is None else options.duration
         if duration > longest + 1e-9:
-            raise CommandError(f"track {track.name!r} is {track.length:.6g} m long, and {duration:g} s at {KMH * speed:.4g} km/h take "
-                               f"{speed * duration:.6g} m: a --duration of at most {np.floor(100.0 * longest) / 100.0:g}s fits, or a longer track")
+            raise CommandError(f"track {track.name!r} is {track.length:.6g} m long, and {duration:g} s {_at(speed)} take "
+                               f"{_way(profile, duration):.6g} m: a --duration of at most {np.floor(100.0 * longest) / 100.0:g}s fits, or a longer track")
     return duration, _with_irregularity(track, options)
+
+
+def _way(profile, duration):
+    """Distance (m) in a time (s)."""
+    return float(profile.speed[0]) * duration if profile.constant else float(profile.place(duration) - profile.place(0.0))
+
+
+def _at(speed):
+    return f"at {KMH * speed:.4g} km/h" if np.ndim(speed) == 0 and not hasattr(speed, "speed") else "at the speeds of the file"
 
 
 def _with_irregularity(track, options):
@@ -166,9 +189,16 @@ def _contact(options, vehicle):
             raise CommandError("--law belongs to contact on profiles: leave out --conicity, or --law")
         contact = replace(plain_contact(options), conicity=options.conicity)
         return contact, {}, f"linear contact of conicity {options.conicity:g}"
+    return profile_contact(options, vehicle)
+
+
+def profile_contact(options, vehicle):
+    """Contact table of the profiles, further arguments of `Simulation`, and both in words; S1002 on UIC60 where none are given."""
+    from railsym.contact_pair import DEEPEST_IN_MOTION
+
+    options.conicity = getattr(options, "conicity", None)
     if options.wheel is None and options.rail is None:
         options.wheel, options.rail = "S1002", "UIC60"
-    from railsym.contact_pair import DEEPEST_IN_MOTION
 
     found = pair_contacts(options, [vehicle])
     law = options.law or "fastsim"

@@ -27,7 +27,11 @@ class ConvergenceError(RailsymError, RuntimeError):
 
 
 class CoreError(RailsymError, RuntimeError):
-    """The C library refused a call; the message carries its status."""
+    """The C library refused a call; the message carries its status, and ``status`` is its number (None where there is none)."""
+
+    def __init__(self, message, status=None):
+        super().__init__(message)
+        self.status = status
 
 
 class SimulationError(RailsymError, ValueError):

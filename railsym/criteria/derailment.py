@@ -115,33 +115,44 @@ def derailment(run, *, wheels="*.Q", wheel_load=None, k1=None, vehicle_speed=Non
     Notes
     -----
     Y/Q is the ratio of the low-passed forces, with either sign of Y. Where the low-passed Q is not above 0 the wheel has lifted:
-    windows that contain such a sample have an infinite Y/Q.
+    windows that contain such a sample have an infinite Y/Q. Wheelsets are taken one after the other: of a run that is left in its
+    file some twelve channels are in memory at once, and two numbers a wheel or wheelset and 0.5 m in the result.
     """
     names = _wheels(run, wheels)
-    found = gather(run, None, [f"{wheel}.{force}" for wheel in names for force in "QY"], "N", distance=distance, speed=speed, needs_distance=True)
     low_pass = Butterworth(0.0, limits("low_pass").value, order, zero_phase)
-    smooth = {name: low_pass.apply(value, found.rate, name) for name, value in found.values.items()}
-    static, notes = _static(run, names, wheel_load, smooth)
-    work = _Work(found.distance, sections, [*notes])
-    for wheel in names:
-        work.ratio(wheel, smooth)
-    for wheelset in dict.fromkeys(wheel.rpartition(".")[0] for wheel in names):
-        work.sum_of_Y(run, wheelset, names, smooth, low_pass, found, static, k1)
-    for wheel in names:
-        work.loads(wheel, smooth[f"{wheel}.Q"], static[wheel], vehicle_speed)
-    for wheel in names:
-        work.quasi_static(wheel, smooth, radius)
-    return Derailment(tuple(work.assessed), work.statistics, work.places, work.signals, static, tuple(work.notes))
+    given, notes = _given_loads(run, names, wheel_load)
+    work = _Work(sections, notes)
+    for wheelset in dict.fromkeys(wheel.rpartition(".")[0] for wheel in names):      # one at a time: a run in a file may be long
+        own = [wheel for wheel in names if wheel.rpartition(".")[0] == wheelset]
+        found = gather(run, None, [f"{wheel}.{force}" for wheel in own for force in "QY"], "N", distance=distance, speed=speed, needs_distance=True)
+        work.distance = distance = found.distance if work.distance is None else work.distance
+        smooth = {name: low_pass.apply(value, found.rate, name) for name, value in found.values.items()}
+        work.wheelset(run, wheelset, own, smooth, low_pass, found.rate, given, k1, vehicle_speed, radius)
+    return Derailment(work.in_order(), work.statistics, work.places, work.signals, work.static, tuple(work.notes))
 
 
 class _Work:
     """Collects the assessed quantities of one run."""
 
-    def __init__(self, distance, sections, notes):
-        self.distance, self.sections, self.notes = distance, sections, notes
-        self.assessed, self.statistics, self.places, self.signals = [], {}, {}, {}
+    def __init__(self, sections, notes):
+        self.distance, self.sections, self.notes = None, sections, notes
+        self.assessed, self.statistics, self.places, self.signals, self.static = [], {}, {}, {}, {}
         self.mean = (limits("mean_length").value, limits("mean_step").value)
         self.both = (limits("low_percentile").value, limits("high_percentile").value)
+
+    def wheelset(self, run, wheelset, wheels, smooth, low_pass, rate, given, k1, vehicle_speed, radius):
+        """All quantities of one wheelset, from its low-passed forces."""
+        for wheel in wheels:
+            self.static[wheel] = float(np.median(smooth[f"{wheel}.Q"])) if given is None else given[wheel]
+            self.ratio(wheel, smooth)
+            self.loads(wheel, smooth[f"{wheel}.Q"], self.static[wheel], vehicle_speed)
+            self.quasi_static(wheel, smooth, radius)
+        self.sum_of_Y(run, wheelset, wheels, smooth, low_pass, rate, k1)
+
+    def in_order(self):
+        """Assessed quantities: all of one kind together, Y/Q first."""
+        kinds = [("Y/Q",), ("sum Y",), ("Q", "unloading"), ("Y quasi-static", "Q quasi-static")]
+        return tuple(item for group in kinds for item in self.assessed if item.name.rpartition(" ")[0] in group)
 
     def add(self, name, distance, values, unit, percentiles, limit):
         found = percentile_analysis(distance, values, percentiles, self.sections)
@@ -149,7 +160,8 @@ class _Work:
         self.assessed.append(Assessed(name, found.largest, unit, limit))
 
     def sliding(self, name, values):
-        self.places[name], self.signals[name] = sliding_mean(self.distance, values, *self.mean)
+        places, self.signals[name] = sliding_mean(self.distance, values, *self.mean)
+        self.places[name] = next(iter(self.places.values()), places)      # the same for all
 
     def ratio(self, wheel, smooth):
         name, load = f"Y/Q {wheel}", smooth[f"{wheel}.Q"]
@@ -162,18 +174,18 @@ class _Work:
             self.signals[name] = np.where(share > 0.0, np.inf, self.signals[name])
         self.add(name, self.places[name], self.signals[name], "-", self.both, limits("YQ"))
 
-    def sum_of_Y(self, run, wheelset, wheels, smooth, low_pass, found, static, k1):
-        name, own = f"sum Y {wheelset}", [wheel for wheel in wheels if wheel.rpartition(".")[0] == wheelset]
+    def sum_of_Y(self, run, wheelset, own, smooth, low_pass, rate, k1):
+        name = f"sum Y {wheelset}"
         if f"{wheelset}.sum_Y" in run:
             given = gather(run, None, f"{wheelset}.sum_Y", "N").values[f"{wheelset}.sum_Y"]
-            total = low_pass.apply(given, found.rate, f"{wheelset}.sum_Y")
+            total = low_pass.apply(given, rate, f"{wheelset}.sum_Y")
         elif len(own) == 2:
             total = smooth[f"{own[0]}.Y"] + smooth[f"{own[1]}.Y"]
         else:
             self.notes.append(f"{wheelset}: only {own[0]} is there and no {wheelset}.sum_Y, so no sum of Y")
             return
         self.sliding(name, total)
-        limit = sum_Y_limit(float(np.mean([static[wheel] for wheel in own])), k1)
+        limit = sum_Y_limit(float(np.mean([self.static[wheel] for wheel in own])), k1)
         self.add(name, self.places[name], self.signals[name], "N", self.both, limit)
 
     def loads(self, wheel, load, static, vehicle_speed):
@@ -182,7 +194,7 @@ class _Work:
         self.add(f"unloading {wheel}", self.distance, 1.0 - load / static, "-", self.both[1:], None)
 
     def quasi_static(self, wheel, smooth, radius):
-        bounds = (None, None) if radius is None else (_quasi_static_Y(radius), limits("Q_quasi_static"))
+        bounds = (None, None) if radius is None else (quasi_static_Y_limit(radius), limits("Q_quasi_static"))
         for force, limit in zip("YQ", bounds):
             self.add(f"{force} quasi-static {wheel}", self.distance, smooth[f"{wheel}.{force}"], "N", (50.0,), limit)
 
@@ -195,12 +207,11 @@ def _wheels(run, patterns):
     return wheels
 
 
-def _static(run, wheels, given, smooth):
-    """Static load of each wheel (N), and what was assumed."""
+def _given_loads(run, wheels, given):
+    """Static load of each wheel (N) if it is given, and what is assumed without it."""
     given = run.info.extra.get("wheel_loads") if given is None else given
     if given is None:
-        medians = {wheel: float(np.median(smooth[f"{wheel}.Q"])) for wheel in wheels}
-        return medians, ["static wheel loads Q0 are the medians of Q: none were given (wheel_load=...)"]
+        return None, ["static wheel loads Q0 are the medians of Q: none were given (wheel_load=...)"]
     loads = {wheel: given for wheel in wheels} if np.ndim(given) == 0 and not isinstance(given, dict) else given
     for wheel in wheels:
         if wheel not in loads:
@@ -210,7 +221,18 @@ def _static(run, wheels, given, smooth):
     return {wheel: float(loads[wheel]) for wheel in wheels}, []
 
 
-def _quasi_static_Y(radius):
+def quasi_static_Y_limit(radius):
+    """Largest quasi-static Y (N) in a curve of a radius (m): 60 kN, in narrow curves 30 kN + 10500 kN m/R.
+
+    Returns
+    -------
+    Limit
+
+    Raises
+    ------
+    CriterionError
+        Radius 0.
+    """
     if not abs(radius) > 0.0:
         raise CriterionError("radius = 0 m: give the radius of the curve, or leave it out on straight track")
     fixed, offset, slope = limits("Y_quasi_static"), limits("Y_quasi_static_offset"), limits("Y_quasi_static_slope")

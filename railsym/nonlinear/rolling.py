@@ -15,7 +15,7 @@ from railsym.errors import ConvergenceError, CoreError, SimulationError
 from railsym.linear_model import LinearModel
 from railsym.simulation.assembled import Assembled
 from railsym.simulation.failure import ending_of
-from railsym.simulation.quasi_static import _Balance
+from railsym.simulation.quasi_static import Balance
 from railsym.simulation.speed import SpeedProfile
 
 RHO = 0.9
@@ -72,7 +72,7 @@ class RollingSystem:
         self.lateral = np.array([self.names.index(f"{name}.y") for name in self.wheelsets])
         self.lateral_rate = np.array([self.names.index(f"{name}.y.rate") for name in self.wheelsets])
         self._spins = np.array([self.names.index(f"{name}.spin.rate") for name in self.wheelsets])
-        self._balance = _Balance(self.parts)
+        self._balance = Balance(self.parts)
         self.parts.integrator.set_channels([("position", coordinates.index(f"{name}.y"), 0, 0) for name in self.wheelsets])
         self.speed = None
         self.integrations = self.steps = 0

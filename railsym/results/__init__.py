@@ -14,6 +14,7 @@ _MODULE_OF = {
     "ChannelWriter": "writer",
     "Channels": "channel",
     "Ending": "metadata",
+    "FileRun": "lazy",
     "ResultError": "errors",
     "ResultFileError": "errors",
     "Run": "run",

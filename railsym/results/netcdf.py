@@ -12,6 +12,7 @@ import numpy as np
 from railsym.results import files, layout
 from railsym.results.channel import TIME, Channel, Channels
 from railsym.results.errors import ResultFileError, optional
+from railsym.results.lazy import FileRun, Records
 from railsym.results.metadata import Ending
 from railsym.results.run import Run
 from railsym.results.writer import ChannelWriter
@@ -30,10 +31,8 @@ def save(run, path):
     """
     writer = ChannelWriter(path, run.channels, run.info, block=max(1, min(len(run), _BLOCK)))
     try:
-        for start in range(0, len(run), _BLOCK):
-            rows = slice(start, start + _BLOCK)
-            time = run.time[rows]
-            writer.write(time, np.column_stack([run[name][rows] for name in run.channels]) if run.channels else np.empty((time.size, 0)))
+        for time, values in run.blocks(_BLOCK):
+            writer.write(time, values)
         writer.finish(run.info.ending)
     except BaseException as error:
         with suppress(OSError):
@@ -43,8 +42,8 @@ def save(run, path):
         raise
 
 
-def load(path, patterns="*"):
-    """Read a run, or the channels of it that fit ``patterns`` (str or sequence of str).
+def load(path, patterns="*", lazy=False):
+    """Read a run, or the channels of it that fit ``patterns`` (str or sequence of str); lazy: leave the samples in the file.
 
     Raises
     ------
@@ -59,7 +58,7 @@ def load(path, patterns="*"):
     _check_there(path)
     try:
         with netcdf_file(path, "r", mmap=path.stat().st_size > 0) as file:
-            return _run(file, path, (patterns,) if isinstance(patterns, str) else tuple(patterns))
+            return _run(file, path, (patterns,) if isinstance(patterns, str) else tuple(patterns), lazy)
     except (OSError, TypeError, ValueError, IndexError, AssertionError) as error:
         if isinstance(error, ResultFileError):
             raise
@@ -86,7 +85,7 @@ def _check_there(path):
     raise ResultFileError(f"there is no file {path}{hint}")
 
 
-def _run(file, path, patterns):
+def _run(file, path, patterns, lazy):
     given = file._attributes
     if layout.FORMAT not in given or layout.INFO not in given or TIME not in file.variables:
         raise ResultFileError(f"{path} is netCDF, but not a run of railsym: it has no attribute {layout.FORMAT}; there are "
@@ -97,11 +96,21 @@ def _run(file, path, patterns):
     channels = Channels(_channel(name, variable._attributes) for name, variable in file.variables.items() if name != TIME)
     names = tuple(channels) if patterns == ("*",) else channels.require(*patterns)
     info = layout.read_info(given[layout.INFO])
+    info = _ended(info, file.variables[TIME])
+    if lazy:
+        # headers with the same channels and bytes of metadata are equally long
+        start = len(layout.header(channels, info.ended(Ending("running")), len(given[layout.INFO]))[0])
+        return FileRun(Records(path, channels, start, file.variables[TIME].shape[0]), names, info)
     time, values = _native(file.variables[TIME]), {name: _native(file.variables[name]) for name in names}
-    if info.status == "running":
-        detail = "the program ended before the file was finished; what it had not written yet is missing"
-        info = info.ended(Ending("interrupted", time=float(time[-1]) if time.size else None, detail=detail))
     return Run(time, values, [channels[name] for name in names], info)
+
+
+def _ended(info, time):
+    """Metadata with the ending of a run whose program ended before its file was finished."""
+    if info.status != "running":
+        return info
+    detail = "the program ended before the file was finished; what it had not written yet is missing"
+    return info.ended(Ending("interrupted", time=float(time[-1]) if time.shape[0] else None, detail=detail))
 
 
 def _channel(name, details):

@@ -141,11 +141,35 @@ class Run:
         if not len(self) or not start <= end or end < self.time[0] or start > self.time[-1]:
             span = f"{self.time[0]:.6g} to {self.time[-1]:.6g} s" if len(self) else "nothing"
             raise ResultError(f"no sample lies between {start:g} and {end:g} s; the run covers {span}")
-        kept = slice(*np.searchsorted(self.time, (start, np.nextafter(end, np.inf))))
-        if kept.start == kept.stop:
-            raise ResultError(f"no sample lies between {start:g} and {end:g} s: the samples around are at {self.time[kept.start - 1]:.6g} "
-                              f"and {self.time[kept.start]:.6g} s")
-        return Run(self.time[kept], {n: v[kept] for n, v in self._values.items()}, self.channels, self.info)
+        first, last = (int(k) for k in np.searchsorted(self.time, (start, np.nextafter(end, np.inf))))
+        if first == last:
+            raise ResultError(f"no sample lies between {start:g} and {end:g} s: the samples around are at {self.time[first - 1]:.6g} "
+                              f"and {self.time[first]:.6g} s")
+        return self._rows(first, last)
+
+    def _rows(self, first, last):
+        """The samples first..last (not including the last)."""
+        return Run(self.time[first:last], {n: v[first:last] for n, v in self._values.items()}, self.channels, self.info)
+
+    def blocks(self, size=4096):
+        """All samples, piece by piece.
+
+        Parameters
+        ----------
+        size : int
+            Samples in a piece, at most.
+
+        Yields
+        ------
+        time : ndarray (m,)
+            s
+        values : ndarray (m, k)
+            A column a channel, in their order.
+        """
+        for first in range(0, len(self), size):
+            rows = slice(first, first + size)
+            time = self.time[rows]
+            yield time, np.column_stack([v[rows] for v in self._values.values()]) if self._values else np.empty((time.size, 0))
 
     def resampled(self, rate):
         """The run at a uniform rate (Hz), by monotone cubic interpolation (PCHIP).
@@ -221,11 +245,31 @@ class Run:
         save(self, path)
 
     @classmethod
-    def from_netcdf(cls, path, channels="*"):
-        """Read a file of `to_netcdf` or of a `ChannelWriter`; only the channels that fit ``channels`` (str or sequence)."""
+    def from_netcdf(cls, path, channels="*", *, lazy=False):
+        """Read a file of `to_netcdf` or of a `ChannelWriter`.
+
+        Parameters
+        ----------
+        path : path
+        channels : str or sequence of str
+            Only those that fit these patterns.
+        lazy : bool
+            Leave the samples in the file (`railsym.results.FileRun`): each channel is read when it is asked for.
+
+        Returns
+        -------
+        Run
+
+        Raises
+        ------
+        ResultFileError
+            No such file, or not one of railsym.
+        UnknownChannelError
+            A pattern fits no channel.
+        """
         from railsym.results.netcdf import load
 
-        return load(path, channels)
+        return load(path, channels, lazy)
 
     def to_csv(self, path):
         """Save as CSV with units in the heading line and metadata in lines that begin with ``#``; values read back exactly."""

@@ -3,6 +3,7 @@
 
 from railsym.simulation.quasi_static import quasi_static, steady_state
 from railsym.simulation.speed import SpeedProfile
+from railsym.simulation.speed_over_distance import SpeedOverDistance, load_speed
 from railsym.simulation.transient import Controls, Simulation, simulate
 
-__all__ = ["Controls", "Simulation", "SpeedProfile", "quasi_static", "simulate", "steady_state"]
+__all__ = ["Controls", "Simulation", "SpeedOverDistance", "SpeedProfile", "load_speed", "quasi_static", "simulate", "steady_state"]

@@ -21,6 +21,7 @@ WHEEL = (("Y", "N", "lateral force of the wheel on the rail, positive outwards")
 PATCH = (("load", "N"), ("xi", "-"), ("eta", "-"), ("phi", "1/m"), ("Fx", "N"), ("Fy", "N"), ("Mz", "N m"), ("x", "m"), ("across", "m"),
          ("radius", "m"), ("angle", "rad"), ("a", "m"), ("b", "m"))
 ZONES = 3
+_PATCH_NUMBER = {name: number for number, (name, _) in enumerate(PATCH)}
 _COMPONENTS = (("fx", "N"), ("fy", "N"), ("fz", "N"))
 _AXES = ("ax", "ay", "az")
 
@@ -206,16 +207,52 @@ def _wheels(run):
         return
     for k, place in enumerate(run.wheels.wheelsets):
         for side, word in enumerate(("left", "right")):
-            wheel = 2 * k + side
-            for number, (name, unit, text) in enumerate(WHEEL):
-                yield Recipe(Channel(f"{place.name}.{word}.{name}", unit, text), (("wheel", wheel * len(WHEEL) + number, 0, 0),), _same)
-            for zone in range(ZONES):
-                for number, (name, unit) in enumerate(PATCH):
-                    raw = ("patch", (wheel * ZONES + zone) * len(PATCH) + number, 0, 0)
-                    yield Recipe(Channel(f"{place.name}.{word}.zone{zone}.{name}", unit, "of the contact patch"), (raw,), _same)
+            yield from _wheel(f"{place.name}.{word}", 2 * k + side)
         sides = tuple(("wheel", (2 * k + side) * len(WHEEL), 0, 0) for side in (0, 1))
         yield Recipe(Channel(f"{place.name}.sum_Y", "N", "lateral force of the wheelset on the track, positive to the right"), sides, _sum_y)
+        body = next(b for b in run.vehicle.bodies if run.model.topology.start[b.name] == place.first)
+        attack = partial(_angle_of_attack, run, body.position[0])
+        yield Recipe(Channel(f"{place.name}.angle_of_attack", "rad", "yaw against the rails under the wheelset, positive nose to the right"),
+                     (("position", place.first + 3, 0, 0),), attack)
+
+
+def _wheel(name, wheel):
+    """Channels of one wheel and of its contact patches."""
+    def raw(zone, quantity):
+        return ("patch", (wheel * ZONES + zone) * len(PATCH) + _PATCH_NUMBER[quantity], 0, 0)
+
+    for number, (quantity, unit, text) in enumerate(WHEEL):
+        yield Recipe(Channel(f"{name}.{quantity}", unit, text), (("wheel", wheel * len(WHEEL) + number, 0, 0),), _same)
+    forces = tuple(("wheel", wheel * len(WHEEL) + number, 0, 0) for number in (0, 1))
+    yield Recipe(Channel(f"{name}.YQ", "-", "Y/Q; not a number where the wheel carries nothing"), forces, _ratio)
+    power = [tuple(raw(zone, quantity) for quantity in ("Fx", "xi", "Fy", "eta", "Mz", "phi")) for zone in range(ZONES)]
+    yield Recipe(Channel(f"{name}.dissipation", "N", "energy per metre that the contact takes: -(Fx xi + Fy eta + Mz phi)"), sum(power, ()), _dissipation)
+    for zone in range(ZONES):
+        for quantity, unit in PATCH:
+            yield Recipe(Channel(f"{name}.zone{zone}.{quantity}", unit, "of the contact patch"), (raw(zone, quantity),), _same)
+        yield Recipe(Channel(f"{name}.zone{zone}.t_gamma", "N", "|Fx xi| + |Fy eta| of the contact patch"), power[zone][:4], _t_gamma)
 
 
 def _sum_y(time, left, right):
     return right - left
+
+
+def _ratio(time, Y, Q):
+    return np.divide(Y, Q, out=np.full_like(Q, np.nan), where=Q > 0.0)
+
+
+def _t_gamma(time, Fx, xi, Fy, eta):
+    return np.abs(Fx * xi) + np.abs(Fy * eta)
+
+
+def _dissipation(time, *columns):
+    """Force times slip and moment times spin of all patches, over the speed."""
+    pairs = zip(columns[0::2], columns[1::2], strict=True)
+    return -sum(force * creepage for force, creepage in pairs)
+
+
+def _angle_of_attack(run, ahead, time, yaw):
+    if run.track is None or not (run.track.irregularities or run.track.switches):
+        return yaw
+    rails = run.track.rails(run.speed.place(time) + ahead)
+    return yaw - np.arctan(0.5 * (rails.left_y_slope + rails.right_y_slope))

@@ -3,8 +3,10 @@
 
     r(q, u, 0) = 0,   u = 0 but for the wheelsets' spins, which turn as the creep forces make them
 
-Unknown are all coordinates but the spin angles, and the spin rates in their place. Newton's iteration, with derivatives by
-differences of the same residual that the integrator steps; from place to place along the track the last solution is the next
+Unknown are all coordinates but the spin angles, and the spin rates in their place. Newton's iteration with the exact slopes that the
+integrator steps with; where a step of it is too long, which it is where a wheel comes to another part of its rail, the vehicle is let go
+towards its equilibrium from rest by steps of implicit Euler with all mass and damping, which grow until they are Newton's (pseudo-transient
+continuation, Kelley and Keyes, SIAM J. Numer. Anal. 35 (1998) 508). From place to place along the track the last solution is the next
 guess, so that a passage from straight to curve is a continuation in curvature. The angular acceleration of the frames in a transition is
 left out. Also for a vehicle that is unstable there.
 """
@@ -13,25 +15,34 @@ from __future__ import annotations
 
 import numpy as np
 
-from railsym.errors import ConvergenceError, CoreError
+from railsym.errors import ContactError, ConvergenceError, CoreError
 from railsym.results import Run
 from railsym.results.metadata import Ending
 from railsym.simulation.transient import Simulation
 
-_STEP = 1e-7       # m or rad; 100 N on the stiffest contact, 1e-8 of which is rounding
-_SPIN_STEP = 1e-5  # rad/s
-_FORCE = 1e-7      # of the vehicle's weight: N, and N m on 1 m, that may be left over in one equation
-_ITERATIONS = 40
+_FORCE = 1e-7        # of the vehicle's weight: N, and N m on 1 m, that may be left over in one equation
+_ITERATIONS = 300    # some 15 from curve to curve, 60 where wheels meet another part of their rail
+_NEWTON = 1e4        # s, pseudo-time step from which on the iteration is Newton's
+_FIRST, _LEAST = 0.1, 1e-5  # s, pseudo-time step after the first failure, and the shortest
+_GROWTH, _SHRINK = 4.0, 0.25
+_SIZE, _SPIN_SIZE = 1e-3, 0.1  # m or rad, rad/s: what a norm of displacements counts as one
+_FARTHEST = 20.0     # of these sizes in one step
 _SHARE = 1.0 / 64.0  # of the commands, first step: small against the way from which on an actuator is at its limit
 
 
-class _Balance:
-    """Residual over the unknowns at one time."""
+class Balance:
+    """Residual over the unknowns at one time.
+
+    Attributes
+    ----------
+    trouble : str
+        What a wheel had to say when the last iteration failed.
+    """
 
     def __init__(self, parts):
-        self.parts, topology = parts, parts.model.topology
+        self.parts, self.trouble, topology = parts, "", parts.model.topology
         self.spin = topology.cyclic
-        self.steps = np.where(self.spin, _SPIN_STEP, _STEP)
+        self.size = np.where(self.spin, _SPIN_SIZE, _SIZE)
         weight = parts.vehicle.gravity * sum(b.mass for b in parts.vehicle.bodies)
         self.allowed = _FORCE * weight * np.where(topology.first_order, 1e-1, 1.0)
 
@@ -39,43 +50,73 @@ class _Balance:
         """q and u of the unknowns."""
         return np.where(self.spin, 0.0, x), np.where(self.spin, x, 0.0)
 
+    def rolled(self, x, start, end):
+        """The unknowns with the wheelsets turning as the speed changes between two times (s)."""
+        before, after = self.parts.speed.at(np.array([start, end]))
+        return np.where(self.spin, x * (after / before), x)
+
     def residual(self, time, x):
         """r (n,)"""
         q, u = self.state(x)
         return self.parts.integrator.residual(time, q, u, np.zeros_like(q))
 
-    def jacobian(self, time, x, r):
-        """dr/dx (n, n) by differences."""
-        columns = []
-        for k, step in enumerate(self.steps):
-            moved = x.copy()
-            moved[k] += step
-            columns.append((self.residual(time, moved) - r) / step)
-        return np.array(columns).T
-
     def solve(self, time, x):
         """The unknowns where r = 0, from a guess; None where the iteration does not get there."""
+        self.trouble, step = "", _NEWTON
         try:
             r = self.residual(time, x)
             for _ in range(_ITERATIONS):
                 if (np.abs(r) <= self.allowed).all():
                     return x
-                x, r = self._nearer(time, x, r, np.linalg.solve(self.jacobian(time, x, r), -r))
-        except (CoreError, np.linalg.LinAlgError):
-            pass
+                nearer = self._nearer(time, x, r, step)
+                if nearer is not None:
+                    (x, r), step = nearer, min(_GROWTH * step, _NEWTON)
+                elif (step := _SHRINK * min(step, _FIRST / _SHRINK)) < _LEAST:
+                    break
+        except CoreError as error:
+            self._note(error, time)
+        self.trouble = self.trouble or "the iteration does not get there"
         return None
 
-    def _nearer(self, time, x, r, move):
-        """The Newton step, shortened until the residual exists and does not grow much."""
-        size = np.abs(r / self.allowed).max()
-        for share in 0.5 ** np.arange(12):
-            try:
-                new = self.residual(time, x + share * move)
-            except CoreError:
-                continue
-            if np.abs(new / self.allowed).max() <= 1.5 * size:
-                return x + share * move, new
-        raise CoreError("no step of Newton's iteration makes the residual smaller")
+    def _nearer(self, time, x, r, step):
+        """Unknowns and residual after a step of pseudo-time; None where the step is too long for one linearisation."""
+        zero = np.zeros_like(x)
+        try:
+            self.residual(time, x)      # the frames of this place, for the slopes
+            move = self._move(*self.state(x), zero, r, step)
+            size = np.linalg.norm(move / self.size)
+            if not np.abs(move / self.size).max() <= _FARTHEST:
+                return None
+            q, spins = self.state(x + move)
+            u, a = np.where(self.spin, spins, move / step), np.where(self.spin, move / step, move / step ** 2)
+            left = self._move(q, u, a, self.parts.integrator.residual(time, q, u, a), step)
+            if not np.linalg.norm(left / self.size) <= 0.5 * size:
+                return None
+            return x + move, self.residual(time, x + move)
+        except CoreError as error:
+            self._note(error, time)
+            return None
+
+    def _move(self, q, u, a, r, step):
+        """Change of the unknowns that undoes r in a step of implicit Euler from rest."""
+        move = self.parts.integrator.solve(q, u, a, np.array([1.0, 1.0 / step, 1.0 / step ** 2]), -r)
+        return np.where(self.spin, move / step, move)
+
+    def _note(self, error, time):
+        self.trouble = wheel_trouble(self.parts, error.status, time) or str(error)
+
+
+def wheel_trouble(parts, status, time):
+    """What keeps a wheel from having forces, in words; empty where no wheel is to blame."""
+    from railsym import _core_integrator as core
+
+    if parts.wheels is None or status != core.OUT_OF_TABLE:
+        return ""
+    try:
+        parts.wheels._core.explain(status, float(parts.speed.at(time)))
+    except ContactError as error:
+        return str(error)
+    return ""
 
 
 def quasi_static(vehicle, *, speed, track, places, contact="linear", channels=None, markers=None, commands=None, **forces):
@@ -150,13 +191,13 @@ def _equilibria(simulation, places, speed, commands):
     parts, times = simulation.parts, (places - places[0]) / speed
     parts.check_track(float(times[-1]))
     parts.integrator._travel.set_steady()
-    balance = _Balance(parts)
+    balance = Balance(parts)
     q, u = parts.start()
     x, now = np.where(balance.spin, u, q), 0.0
     if commands:
         x = _commanded(balance, simulation, x, commands)
     for time in times:
-        x = _continued(balance, x, now, time, places[0], speed)
+        x = continued(balance, x, now, time)
         now = time
         yield balance.state(x)
 
@@ -180,18 +221,38 @@ def _commanded(balance, simulation, x, commands):
     return x
 
 
-def _continued(balance, x, start, end, first, speed):
-    """Solution at ``end`` (s) from that at ``start``, by steps that are halved where the iteration fails."""
+def continued(balance, x, start, end, shortest=1.0 / 256.0):
+    """Solution at ``end`` (s) from that at ``start``, by steps that are halved where the iteration fails.
+
+    Parameters
+    ----------
+    balance : Balance
+    x : ndarray (n,)
+        Unknowns at the start.
+    start, end : float
+        s
+    shortest : float
+        Least part of the way that is tried.
+
+    Returns
+    -------
+    ndarray (n,)
+
+    Raises
+    ------
+    ConvergenceError
+    """
     share, at = 1.0, 0.0
     while at < 1.0:
         share = min(share, 1.0 - at)
-        found = balance.solve(start + (at + share) * (end - start), x)
+        found = balance.solve(start + (at + share) * (end - start), balance.rolled(x, *(start + part * (end - start) for part in (at, at + share))))
         if found is None:
             share *= 0.5
-            if share < 1.0 / 256.0 or end == start:
-                place = first + speed * (start + at * (end - start))
+            if share < shortest or end == start:
+                place = float(balance.parts.speed.place(start + at * (end - start)))
+                why = f" ({balance.trouble})" if balance.trouble else ""
                 raise ConvergenceError(f"no equilibrium was found beyond s = {place:.6g} m: the vehicle cannot run there steadily, or a wheel leaves "
-                                       "its contact table; look at the last places (places=...) and begin on a straight")
+                                       f"its contact table{why}; look at the last places (places=...) and begin on a straight")
             continue
         x, at = found, at + share
     return x

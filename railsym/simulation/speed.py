@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from os import PathLike
 
 import numpy as np
 
@@ -45,9 +46,15 @@ class SpeedProfile:
 
     @classmethod
     def of(cls, speed, start=0.0):
-        """From a number (m/s), pairs of time (s) and speed (m/s), or a SpeedProfile."""
+        """From a number (m/s), pairs of time (s) and speed (m/s), a SpeedProfile, a SpeedOverDistance, or a file of one (`load_speed`)."""
+        if isinstance(speed, (str, PathLike)):
+            from railsym.simulation.speed_over_distance import load_speed
+
+            speed = load_speed(speed)
         if isinstance(speed, cls):
             return cls(speed.time, speed.speed, start)
+        if hasattr(speed, "profile"):
+            return speed.profile(start)
         if np.ndim(speed) == 0:
             return cls([0.0], [speed], start)
         pairs = np.asarray(speed, dtype=float)

@@ -91,6 +91,7 @@ class Simulation:
             self.ending = ending_of(self.parts, status or sampled)
             raise SimulationError(f"the run cannot begin: {self.ending}")
         self._times, self._values, self._waiting = [np.zeros(1)], [self.recorder.values(np.zeros(1), row[None])], []
+        self._file = None  # the run's file, where samples are not kept in memory
 
     def command(self, commands, q):
         """Set commands of actuators, dict of m or N, and in the coordinates q (n,) the states of those that have followed them."""
@@ -129,11 +130,12 @@ class Simulation:
         waiting, self._waiting = self._waiting, []
         times, samples = (np.concatenate(part) for part in zip(*waiting, strict=True))
         values = self.recorder.values(times, samples)
-        self._times.append(times)
-        self._values.append(values)
+        if self._file is None:
+            self._times.append(times)
+            self._values.append(values)
         return times, values
 
-    def run(self, duration, *, controllers=(), progress=False, writer=None):
+    def run(self, duration, *, controllers=(), progress=False, writer=None, keep="memory"):
         """Go on for ``duration`` (s); Ctrl-C ends the run with what there is.
 
         Parameters
@@ -145,12 +147,16 @@ class Simulation:
             A bar on the error stream.
         writer : ChannelWriter, optional
             Gets the samples as they come.
+        keep : {"memory", "file"}
+            ``"file"``: samples go to the writer and are forgotten, so that memory does not grow; from then on `result` reads the
+            writer's file, once it is finished.
 
         Raises
         ------
         ControllerError
             A controller whose answer makes no sense, with the run until then.
         """
+        self._keep_in(keep, writer)
         total = self._check_duration(duration)
         first = self.parts.integrator.report.steps
         calls = [(function, _period(rate, self.dt)) for function, rate in controllers]
@@ -181,6 +187,16 @@ class Simulation:
         if self.ending.reason == "running":
             self.ending = Ending("completed", time=self.time, distance=float(self.parts.speed.place(self.time)))
 
+    def _keep_in(self, keep, writer):
+        if keep not in ("memory", "file"):
+            raise SimulationError(f"keep = {keep!r}: samples are kept in 'memory', or in the 'file' only")
+        if keep == "file" and writer is None:
+            raise SimulationError("keep = 'file' needs the file: simulate(..., save=\"run.nc\"), or run(..., writer=ChannelWriter(...))")
+        if keep == "memory" and self._file is not None:
+            raise SimulationError(f"the samples before are in {self._file} only: go on with keep=\"file\" and the same writer")
+        if keep == "file":
+            self._file = writer.path
+
     def _hand_over(self, writer):
         """Make channels of what waits, and write them."""
         if self._waiting:
@@ -210,11 +226,13 @@ class Simulation:
                        message=str(self.ending), extra={"counts": counts} | ({"faults": self.faults} if self.faults else {}))
 
     def result(self):
-        """The `Run` so far."""
+        """The `Run` so far; of a run that is kept in its file, a `railsym.results.FileRun` once the writer is finished."""
+        if self._file is not None:
+            return Run.from_netcdf(self._file, lazy=True)
         return Run(np.concatenate(self._times), np.concatenate(self._values), self.recorder.channels, self.info)
 
 
-def simulate(vehicle, *, speed, duration, controllers=(), progress=False, save=None, **options):
+def simulate(vehicle, *, speed, duration, controllers=(), progress=False, save=None, keep="memory", **options):
     """Simulate a vehicle in motion.
 
     Parameters
@@ -229,6 +247,9 @@ def simulate(vehicle, *, speed, duration, controllers=(), progress=False, save=N
     progress : bool
     save : str or Path, optional
         netCDF file that the samples are written to as they come, so that nothing is lost when the program ends.
+    keep : {"memory", "file"}
+        ``"file"``: samples are in the file ``save`` only and memory does not grow with the length of the run; the result reads each
+        channel from the file when it is asked for (`railsym.results.FileRun`).
 
     Returns
     -------
@@ -241,11 +262,13 @@ def simulate(vehicle, *, speed, duration, controllers=(), progress=False, save=N
         What cannot be started as asked.
     """
     simulation = Simulation(vehicle, speed=speed, **options)
+    if keep == "file" and save is None:
+        raise SimulationError('keep = "file" needs the file: save="run.nc"')
     channels = simulation.recorder.channels
     with ChannelWriter(save, channels, simulation.info) if save is not None else nullcontext() as writer:
         if writer is not None:
             writer.write(simulation._times[0], simulation._values[0])
-        simulation.run(duration, controllers=controllers, progress=progress, writer=writer)
+        simulation.run(duration, controllers=controllers, progress=progress, writer=writer, keep=keep)
         if writer is not None:
             writer.info = simulation.info  # with what happened on the way
             writer.finish(simulation.ending, str(simulation.ending))

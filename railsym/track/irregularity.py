@@ -96,7 +96,10 @@ class RandomIrregularity:
         if period > _MOST_NODES:
             raise TrackError(f"{length:g} m of irregularity down to a wavelength of {short:g} m needs {period} points; make the shortest wavelength longer")
         spectrum = load_spectrum(self.spectrum)
-        return step, np.stack([self._signal(spectrum, k, name, step, period)[:count] for k, name in enumerate(SIGNALS)], axis=1)
+        signals = np.empty((count, len(SIGNALS)))
+        for k, name in enumerate(SIGNALS):
+            signals[:, k] = self._signal(spectrum, k, name, step, period)[:count]
+        return step, signals
 
     def _signal(self, spectrum, which, name, step, period):
         if name not in spectrum.densities:
@@ -116,8 +119,12 @@ class RandomIrregularity:
     def layer(self, track_length):
         """Deviations of the rails on a track of that length (m), as RailLayer."""
         start, end = placed("irregularity", self.start, self.length, track_length)
-        step, signals = self.signals(end - start)
-        return _faded_layer(start, step, rails_of(signals), end, self.fade, 0.0 if end == track_length else self.fade)
+        step, rails = self._rails(end - start)
+        return _faded_layer(start, step, rails, end, self.fade, 0.0 if end == track_length else self.fade)
+
+    def _rails(self, length):
+        step, signals = self.signals(length)
+        return step, rails_of(signals)
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,8 +251,10 @@ def _check_place(what):
 def _faded_layer(start, step, rails, end, fade_in, fade_out):
     if fade_in + fade_out > end - start:
         raise TrackError(f"irregularity from s = {start:.6g} m to {end:.6g} m is shorter than its fading, {fade_in + fade_out:g} m; make the fading shorter")
-    quiet = np.zeros((REST, 4))
     # beyond the end of the track a node more, so that the end lies inside the spline
-    tail = quiet if fade_out else 2.0 * rails[-1:] - rails[-2:-1]
-    rails = rails * window(start + step * np.arange(len(rails)), start, end, fade_in, fade_out)[:, None]
-    return spline_layer(start - REST * step, step, np.concatenate([quiet, rails, tail]), after=tail[-1])
+    tail = np.zeros((REST, 4)) if fade_out else 2.0 * rails[-1:] - rails[-2:-1]
+    values = np.zeros((REST + len(rails) + len(tail), 4))
+    shape = window(start + step * np.arange(len(rails)), start, end, fade_in, fade_out)
+    np.multiply(rails, shape[:, None], out=values[REST:REST + len(rails)])
+    values[REST + len(rails):] = tail
+    return spline_layer(start - REST * step, step, values, after=tail[-1])

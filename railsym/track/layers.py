@@ -49,14 +49,16 @@ def spline_layer(start, step, rails, after=(0.0,) * 4, interpolate=True):
     -------
     RailLayer
     """
-    inner = _interpolating(rails) if interpolate else rails
+    coefficients = np.empty((len(rails) + 2, 4))
+    for k in range(4):      # one after the other: lines are long
+        coefficients[1:-1, k] = _interpolating(rails[:, k]) if interpolate else rails[:, k]
     # natural ends: no curvature before the first and behind the last node
-    coefficients = np.concatenate([[2.0 * inner[0] - inner[1]], inner, [2.0 * inner[-1] - inner[-2]]])
+    coefficients[0], coefficients[-1] = 2.0 * coefficients[1] - coefficients[2], 2.0 * coefficients[-2] - coefficients[-3]
     return RailLayer(float(start), float(step), coefficients, np.array(after, dtype=float))
 
 
 def _interpolating(values):
-    """Coefficients with (c[k-1] + 4 c[k] + c[k+1])/6 = values[k] and natural ends, where c = values."""
+    """Coefficients (n,) with (c[k-1] + 4 c[k] + c[k+1])/6 = values[k] and natural ends, where c = values."""
     from scipy.linalg import solve_banded
 
     count = len(values)

@@ -41,7 +41,8 @@ def read_table(path, columns, needed):
         raise TrackError(f"{path}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
     lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")]
     if not lines:
-        raise TrackError(f"{path.name}: is empty; a heading line such as \"s [m], {needed[-1]} [{columns[needed[-1]]}]\" and lines of numbers are needed")
+        example = (needed or tuple(columns))[-1]
+        raise TrackError(f"{path.name}: is empty; a heading line such as \"s [m], {example} [{columns[example]}]\" and lines of numbers are needed")
     separator = next((mark for mark in ("\t", ";") if mark in lines[0][1]), ",")
     names, units = _headings(path.name, next(csv.reader([lines[0][1]], delimiter=separator)), columns)
     for name in needed:
