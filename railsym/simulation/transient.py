@@ -181,6 +181,9 @@ class Simulation:
         except ControllerError as error:
             self.ending = Ending("interrupted", time=self.time, distance=float(self.parts.speed.place(self.time)), detail=str(error))
             self._hand_over(writer)
+            if self._file is not None:
+                writer.info = self.info
+                writer.finish(self.ending)
             error.run = self.result()
             raise
         self._hand_over(writer)
