@@ -127,7 +127,7 @@ def test_what_is_wrong_in_a_file_is_named(tmp_path, old, new, message):
 
 
 def test_tracks_that_come_along():
-    assert shipped() == ("s_curve_500", "straight_erri_high", "straight_erri_low")
+    assert shipped() == ("curve_500", "line_20km", "s_curve_500", "straight", "straight_erri_high", "straight_erri_low", "turnout_300")
     for name in shipped():
         track = rs.load_track(name)
         assert track.name == name and len(track.jumps) == 0

@@ -24,7 +24,7 @@ _MODULE_OF = {
     "VerticalCurve": "sections",
     "load_spectrum": "spectrum",
     "load_track": "reading",
-    "read_geometry": "measured",
+    "read_geometry": "geometry_file",
     "read_irregularity": "irregularity",
     "spectra": "spectrum",
     "tracks": "reading",

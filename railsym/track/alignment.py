@@ -161,6 +161,6 @@ def check_limits(function, factor, limit, what, unit):
         raise TrackError(f"{what} = {values[worst]:g} {unit} at s = {function.joints[worst]:.6g} m is beyond {limit:g} {unit}; are the units right?")
 
 
-def check_cant(function):
+def check_cant(function, name=None):
     """Refuse cant beyond what track can have."""
-    check_limits(function, RAIL_SPACING, MAX_CANT, "cant", "m")
+    check_limits(function, RAIL_SPACING, MAX_CANT, "cant" if name is None else f"{name}: cant", "m")

@@ -7,7 +7,7 @@ from pathlib import Path
 from railsym.errors import TrackError
 from railsym.track import schema
 from railsym.track.irregularity import read_irregularity
-from railsym.track.measured import read_geometry
+from railsym.track.geometry_file import read_geometry
 from railsym.track.toml_values import Reader
 from railsym.track.track import Track
 from railsym.vehicle_checks import unknown
@@ -32,7 +32,8 @@ def load_track(name_or_path):
     Parameters
     ----------
     name_or_path : str or path
-        One of `tracks`, or a file that ends in .toml; files that it names are looked up beside it.
+        One of `tracks`; or a file that ends in .toml (files that it names are looked up beside it), or a CSV file of measured
+        geometry (`Track.from_file`).
 
     Returns
     -------
@@ -44,9 +45,11 @@ def load_track(name_or_path):
         Naming file, key, value, what is allowed and the nearest match.
     """
     path = Path(name_or_path)
+    if path.suffix.lower() == ".csv":
+        return Track.from_file(path)
     if path.suffix != ".toml":
         if str(name_or_path) not in tracks():
-            raise TrackError(f"track {str(name_or_path)!r} is {unknown(name_or_path, tracks(), 'names')}; a file ends in .toml")
+            raise TrackError(f"track {str(name_or_path)!r} is {unknown(name_or_path, tracks(), 'names')}; a file ends in .toml, measured geometry in .csv")
         path = _FOLDER / f"{name_or_path}.toml"
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -119,7 +122,8 @@ class _TrackReader(Reader):
     def geometry(self, table):
         """Measured geometry."""
         if isinstance(table, dict) and "file" in table:
-            return self.made("geometry", read_geometry, {"path": self.folder / self.values("geometry", table, schema.GEOMETRY_FILE)["file"]})
+            values = self.values("geometry", table, schema.GEOMETRY_FILE)
+            return self.made("geometry", read_geometry, {"path": self.folder / values.pop("file"), **values})
         return self.one("geometry", table, schema.GEOMETRY, ("s", "curvature"))
 
     def irregularity(self, key, table):

@@ -24,8 +24,9 @@ RANDOM = (RandomIrregularity, {"spectrum": "text", "seed": "whole", "wavelengths
                               "mirrored": "flag"})
 MEASURED = (MeasuredIrregularity, {"name": "text", "s": "column m", **dict.fromkeys((*SIGNALS, *RAILS), "column m"), "fade": "m", "covers": "flag"})
 IRREGULARITY_FILE = {"file": "text", "fade": "m", "covers": "flag"}
-GEOMETRY = (MeasuredGeometry, {"name": "text", **{name: f"column {unit}" for name, unit in COLUMNS.items()}})
-GEOMETRY_FILE = {"file": "text"}
+GEOMETRY = (MeasuredGeometry, {"name": "text", "interpolation": "text", **{name: f"column {unit}" for name, unit in COLUMNS.items()}})
+GEOMETRY_FILE = {"file": "text", "smoothing": "m", "interpolation": "text", "chord": "m", "curve_positive": "text", "cant_positive": "text",
+                 "largest_gap": "m"}
 SWITCH = (Switch, {"start": "m", "length": "m", "amplitude": "m", "shape": "text", "rails": "text",
                    "crossing_start": "m", "crossing_length": "m", "crossing_depth": "m"})
 TRACK = {"name": "text", "rounding": "m"}

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from railsym.errors import TrackError
-from railsym.units import UnitError, to_si
+from railsym.units import UnitError, same_dimension, to_si
 from railsym.vehicle_checks import unknown
 
 _HEADING = re.compile(r"\s*(.*?)\s*[\[(]\s*([^\])]+?)\s*[\])]\s*")
@@ -21,8 +21,8 @@ def read_table(path, columns, needed):
     ----------
     path : path
         Separated by commas, semicolons or tabs (with the latter two a decimal comma is read); lines that begin with # are left out.
-    columns : dict of str to str
-        Name -> SI unit of the columns that may be there.
+    columns : dict of str to (str or tuple of str)
+        Name -> SI unit of the columns that may be there, or several that it may have: found under "NAME UNIT" in other units than the first.
     needed : sequence of str
 
     Returns
@@ -42,7 +42,7 @@ def read_table(path, columns, needed):
     lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")]
     if not lines:
         example = (needed or tuple(columns))[-1]
-        raise TrackError(f"{path.name}: is empty; a heading line such as \"s [m], {example} [{columns[example]}]\" and lines of numbers are needed")
+        raise TrackError(f"{path.name}: is empty; a heading line such as \"s [m], {example} [{_first(columns[example])}]\" and lines of numbers are needed")
     separator = next((mark for mark in ("\t", ";") if mark in lines[0][1]), ",")
     names, units = _headings(path.name, next(csv.reader([lines[0][1]], delimiter=separator)), columns)
     for name in needed:
@@ -51,11 +51,17 @@ def read_table(path, columns, needed):
     values = _numbers(path.name, lines[1:], separator, len(names))
     found = {}
     for name, unit, column in zip(names, units, values.T, strict=True):
+        units = (columns[name],) if isinstance(columns[name], str) else columns[name]
         try:
-            found[name] = to_si(column, unit, columns[name])
+            fits = [expected for expected in units if same_dimension(unit, expected)] or units[:1]
+            found[name if fits[0] == units[0] else f"{name} {fits[0]}"] = to_si(column, unit, fits[0])
         except UnitError as error:
             raise TrackError(f"{path.name}: column {name!r}: {error}") from None
     return found
+
+
+def _first(units):
+    return units if isinstance(units, str) else units[0]
 
 
 def _headings(file, cells, columns):
@@ -66,7 +72,7 @@ def _headings(file, cells, columns):
         if name not in columns:
             raise TrackError(f"{file}: column {name!r} is {unknown(name, columns, 'columns')}")
         if match is None:
-            raise TrackError(f'{file}: column {name!r} says no unit; write "{name} [{columns[name]}]"')
+            raise TrackError(f'{file}: column {name!r} says no unit; write "{name} [{_first(columns[name])}]"')
         if name in names:
             raise TrackError(f"{file}: column {name!r} is there twice")
         names.append(name)

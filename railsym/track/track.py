@@ -12,7 +12,7 @@ from railsym.errors import TrackError
 from railsym.track.alignment import alignment
 from railsym.track.integration import pieces
 from railsym.track.irregularity import MeasuredIrregularity, RandomIrregularity, read_irregularity
-from railsym.track.measured import MeasuredGeometry, read_geometry
+from railsym.track.measured import MeasuredGeometry
 from railsym.track.places import Frames, Rails
 from railsym.track.sections import RAIL_SPACING, Curve, Straight, Transition, number
 from railsym.track.switch import Switch
@@ -128,8 +128,18 @@ class Track:
 
     @classmethod
     def from_file(cls, path, **options):
-        """Track from a file of curvature, cant and gradient over s (CSV, `railsym.track.read_geometry`)."""
-        geometry = read_geometry(path)
+        """Track from a file of curvature, radius or versine, cant and gradient over s.
+
+        Parameters
+        ----------
+        path : path
+            CSV, as `railsym.track.read_geometry` takes it.
+        options
+            smoothing, interpolation, chord, curve_positive, cant_positive, largest_gap of `read_geometry`; others of `Track`.
+        """
+        from railsym.track.geometry_file import OPTIONS, read_geometry
+
+        geometry = read_geometry(path, **{name: options.pop(name) for name in OPTIONS if name in options})
         return cls(geometry, **{"name": geometry.name, **options})
 
     def with_irregularity(self, irregularity, *, seed=None, **options):
