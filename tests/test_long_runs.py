@@ -156,3 +156,37 @@ def test_bad_files(tmp_path, text, message):
     (tmp_path / "a.csv").write_text(text)
     with pytest.raises(SimulationError, match=message):
         rs.load_speed(tmp_path / "a.csv")
+
+
+# --- sections ------------------------------------------------------------------------------------------------------------
+
+
+def test_sections_of_a_line_are_straight_or_full_curve():
+    line = rs.load_track("line_20km")
+    found = rs.criteria.track_sections(line)
+    for part in found:
+        inside = line.curvature(np.linspace(part.start, part.end, 50))
+        assert np.ptp(inside) < 2.1e-5 + 0.1 * abs(inside.mean()), part
+    built = np.array([800.0, 1000.0, 1200.0, 1500.0, 2000.0, 3000.0])
+    nearest = {float(built[np.abs(built / part.radius - 1.0).argmin()]) for part in found if np.isfinite(part.radius)}
+    assert nearest == set(built)
+    assert all(np.abs(built / part.radius - 1.0).min() < 5e-3 for part in found if np.isfinite(part.radius))      # the end of a ramp within 5 %
+    assert all(part.end - part.start == 250.0 for part in found) and 60 < len(found) < 80
+    first = next(part for part in found if part.direction == "right")
+    assert first.radius == pytest.approx(1500.0, rel=5e-3) and first.cant == pytest.approx(0.1, rel=5e-3)
+    left = next(part for part in found if part.direction == "left")
+    assert left.cant == pytest.approx(0.11, rel=5e-3)
+    tight = rs.criteria.track_sections(rs.Track.curve(300.0, 200.0, transition=50.0, cant=0.1))
+    assert [part.end - part.start for part in tight if part.direction == "right"] == [70.0, 70.0]
+    assert len(rs.criteria.track_sections(line, length=100.0, first=0.0, last=1000.0)) == 10
+    for options, message in (({"first": -1.0}, "runs from 0 to 20000"), ({"length": 0.5}, "at least 2 m"), ({"first": 1000.0, "last": 1100.0}, "no section")):
+        with pytest.raises(rs.RailsymError, match=message):
+            rs.criteria.track_sections(line, **options)
+
+
+def test_percentiles_by_section_of_a_run_in_a_file(tmp_path):
+    found = run(save=tmp_path / "b.nc", keep="file")
+    parts = rs.criteria.track_sections(TRACK, length=40.0, first=10.0, last=140.0)
+    judged = rs.criteria.derailment(found, sections=[(part.start, part.end) for part in parts])
+    values = judged.statistics["Q wheelset1.left"].values
+    assert values.shape == (3, 1) and judged["Q wheelset1.left"].value == values.max()

@@ -16,6 +16,7 @@ _MODULE_OF = {
     "Butterworth": "filters",
     "CriterionError": "errors",
     "Limit": "limits",
+    "TrackSection": "sections",
     "acceleration_rms": "body",
     "body_acceleration": "body",
     "comfort": "comfort",
@@ -30,6 +31,7 @@ _MODULE_OF = {
     "sliding_mean": "sliding",
     "sliding_rms": "sliding",
     "sperling": "sperling",
+    "track_sections": "sections",
     "weighting": "weighting",
 }
 
