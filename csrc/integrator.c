@@ -95,6 +95,11 @@ int rs_integrator_start(rs_integrator *it, double time, const double *q, const d
 	return it->report.status = rs_integrator_begin(it, time);
 }
 
+int rs_integrator_restart(rs_integrator *it)
+{
+	return it->report.status = rs_integrator_begin(it, it->report.time);
+}
+
 int rs_integrator_set_step(rs_integrator *it, double step)
 {
 	if (!(step > 0.0) || !isfinite(step))

@@ -40,6 +40,7 @@
  *   Status    RS_OK; RS_NOT_CONVERGED, RS_NOT_FINITE, RS_SINGULAR and those of the track and the wheels: the state
  *             is that of the end of the last good step, rs_integrator_report says more. RS_STOPPED by the controller.
  *   Notes     No allocation. The same steps in one run or in ten: the same bytes.
+ * rs_integrator_restart  a force has jumped: accelerations and rates of internal states anew from the state as it is; status as start
  * rs_integrator_follow   actuators with a lag have a new command or fault: the rates of what they follow jump at once, instead of
  *                        ringing over the next steps. Called after every controller in C
  * rs_integrator_look     everything is evaluated at the end of the last step: laws with a `seen` have seen it, body inputs are of that time

@@ -27,6 +27,7 @@ _MODULE_OF = {
     "Track": "track",
     "Study": "sweep",
     "SwitchStudy": "studies",
+    "TiltLinkage": "tilt_linkage",
     "Vehicle": "vehicle",
     "WheelRail": "wheel_rail",
     "animate": "plots.animation",

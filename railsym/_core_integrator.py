@@ -114,6 +114,10 @@ class Integrator:
         self._wheels = forces
         _check(lib.rs_integrator_wheels(self._pointer, forces.pointer, len(first), _integers(first)), "wheels")
 
+    def restart(self):
+        """A force has jumped: accelerations anew from the state as it is; returns the status."""
+        return lib.rs_integrator_restart(self._pointer)
+
     def follow(self):
         """Commands or faults of actuators are new: what they follow goes on from there without ringing."""
         lib.rs_integrator_follow(self._pointer)

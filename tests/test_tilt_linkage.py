@@ -131,9 +131,9 @@ def swinging(vehicle, start, duration, kind="free"):
     linkage = TiltLinkage(vehicle, "track")
     across, down = linkage.shift(start)
     begin = {"car.y": across, "car.z": down, "car.roll": start}
-    simulation = Simulation(vehicle, speed=1.0, contact=None, dt=1e-3, initial=begin, rho=1.0, rate=1000.0,
+    simulation = Simulation(vehicle, speed=1.0, contact=None, dt=1e-3, initial=begin, rho=1.0, rate=1000.0, faults=[(0.0, "tilt_actuator.a", kind)],
                             channels=["car.roll", "car.roll.rate", "car.[yz].rate", "car.z", "tilt_actuator.a.*"])
-    simulation.run(duration, controllers=[(lambda controls: controls.fault("tilt_actuator.a", kind) if controls.time == 0.0 else None, 10.0)])
+    simulation.run(duration)
     return linkage, simulation.result()
 
 
@@ -175,3 +175,21 @@ def test_bypass_damping_takes_the_energy(swing):
     speed = run["car.y.rate"][20] ** 2 + run["car.z.rate"][20] ** 2
     energy = 0.5 * (64000.0 * rate ** 2 + BODY * speed) - BODY * 9.81 * linkage.shift(roll)[1]
     assert work == pytest.approx(-energy, rel=0.01)
+
+
+def test_drawing_takes_links_and_centres_from_the_vehicle():
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from railsym.plots import plot_tilt_linkage, style
+
+    vehicle = rs.load_vehicle("pendolino_tilting").replace({"swing_link.front_outer_left.first_position.2": -1.3, "swing_link.front_inner_left.first_position.2": -1.3,
+                                                            "swing_link.front_outer_right.first_position.2": -1.3, "swing_link.front_inner_right.first_position.2": -1.3})
+    upright, tilted = plot_tilt_linkage(vehicle, np.radians(6.0))
+    for axes, angle in ((upright, 0.0), (tilted, np.radians(6.0))):
+        links = [line for line in axes.lines if line.get_color() == style.VERMILION and line.get_linewidth() == 3.0]
+        assert len(links) == 4 and all(line.get_ydata()[0] == pytest.approx(1.3) for line in links)
+        centre = next(line for line in axes.lines if line.get_marker() == "X")
+        place = TiltLinkage(vehicle).centre(angle) + [0.0, vehicle.body("car").position[2]]
+        assert (centre.get_xdata()[0], -centre.get_ydata()[0]) == pytest.approx(tuple(place))
+    matplotlib.pyplot.close("all")

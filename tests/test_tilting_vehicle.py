@@ -192,15 +192,8 @@ def tilted(pair):
     options = {"track": track, "speed": speed, "start": 200.0, "contact": pair, "initial": start, "commands": commands(np.radians(7.5))}
 
     def run(kind, jacks=JACKS, duration=6.0):
-        def fail(controls):
-            if round(controls.time / 0.01) == 50:
-                for jack in jacks:
-                    controls.fault(jack, kind)
-            if controls.time > 0.5 and kind == "stuck":
-                for jack in jacks:
-                    controls.command(jack, 0.0)
-
-        return rs.simulate(VEHICLE, duration=duration, controllers=[(fail, 100.0)],
+        back = [(lambda controls: [controls.command(jack, 0.0) for jack in JACKS if controls.time > 0.5], 100.0)] if kind == "stuck" else []
+        return rs.simulate(VEHICLE, duration=duration, faults=[(0.5, jack, kind) for jack in jacks], controllers=back,
                            channels=["*.roll", "car.ay", "tilt_actuator.*", "*.Y", "*.Q", "*.sum_Y"], **options)
 
     return run
@@ -319,6 +312,11 @@ def test_errors_of_controllers():
     controls = Controls(Simulation(VEHICLE, speed=20.0))
     with pytest.raises(SimulationError, match=r"fault of 'tilt_actuator.front_left': 'frozen' is unknown.*stuck"):
         controls.fault("tilt_actuator.front_left", "frozen")
+    with pytest.raises(SimulationError, match="fault of 'tilt_actuator.front_left' at -1.0 s: a time from 0 s on"):
+        Simulation(VEHICLE, speed=20.0, faults=[(-1.0, "tilt_actuator.front_left", "free")])
+    quick = VEHICLE.replace({"tilt_actuator.rate_limit": np.inf, "tilt_actuator.lag": 0.0})
+    with pytest.raises(SimulationError, match="has nothing to be stuck at; give it a lag"):
+        Simulation(quick, speed=20.0, faults=[(1.0, "tilt_actuator.front_left", "stuck")])
     with pytest.raises(SimulationError, match="length of 'jack': actuators of this vehicle are tilt_actuator.front_left"):
         controls.length("jack")
     with pytest.raises(SimulationError, match=r"imu on 'body': unknown.*bodies"):

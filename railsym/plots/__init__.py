@@ -14,6 +14,7 @@ from railsym.plots.stability_curves import (plot_change, plot_critical_speed, pl
                                             plot_stability_report)
 from railsym.plots.study import plot_parallel, plot_scatter, plot_study_map
 from railsym.plots.switch import plot_quasi_linear, plot_switch_study
+from railsym.plots.tilt_linkage import plot_tilt_linkage
 from railsym.plots.track import plot_track
 from railsym.plots.uncertainty import plot_convergence, plot_probability, plot_sobol, plot_tornado
 
@@ -21,4 +22,4 @@ __all__ = ["plot_change", "plot_convergence", "plot_critical_speed", "plot_dampe
            "plot_frequency", "plot_mode_shape", "plot_optimisation", "plot_parallel", "plot_parameter_map", "plot_pareto",
            "plot_probability", "plot_profile_pair", "plot_quasi_linear", "plot_root_locus", "plot_run", "plot_scatter",
            "plot_sensitivities", "plot_sobol", "plot_spectrum", "plot_stability_map", "plot_stability_report", "plot_study_map",
-           "plot_switch_study", "plot_tornado", "plot_track"]
+           "plot_switch_study", "plot_tilt_linkage", "plot_tornado", "plot_track"]

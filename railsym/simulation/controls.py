@@ -85,15 +85,23 @@ class Controls:
         SimulationError
             Another kind, an element that is no actuator, or one without a lag that is to be stuck at what it follows.
         """
+        table, number = self.check_fault(element, kind)
+        self._run.faults.append({"time": self.time, "element": element, "fault": kind, "length": self.length(element),
+                                 "force": self.actuator_force(element)})
+        table.set_fault(number, kind)
+        self._state = self._looked = None
+        if self._parts.integrator.restart():
+            raise SimulationError(f"fault of {element!r} at t = {self.time:.6g} s: the run cannot go on from there")
+
+    def check_fault(self, element, kind):
+        """Table of laws and number in it of an actuator that can fail so; raises as `fault`."""
         table, number = self._actuator(element, "fault")
         if kind not in _core.FAULTS:
             raise SimulationError(f"fault of {element!r}: {kind!r} is {unknown(kind, _core.FAULTS, 'faults')}")
         if kind == "stuck" and not table.lags(number):
             raise SimulationError(f"fault of {element!r}: an actuator without a lag follows its command at once and has nothing to be stuck at; "
                                   "give it a lag (s) in the vehicle file, or command what it is to hold")
-        self._run.faults.append({"time": self.time, "element": element, "fault": kind, "length": self.length(element),
-                                 "force": self.actuator_force(element)})
-        table.set_fault(number, kind)
+        return table, number
 
     def length(self, element):
         """By how much an actuator is longer than at the design position, m."""

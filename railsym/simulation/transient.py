@@ -45,6 +45,8 @@ class Simulation:
         as it begins, without irregularities.
     commands : dict of str to float, optional
         Commands of actuators from the start, m or N, as `Controls.command` sets them; actuators with a lag begin at them.
+    faults : sequence of (float, str, str)
+        Actuators that fail: time (s, to the nearest step), element, and kind as `Controls.fault` has them.
     initial : dict of str to float, or (q, u), optional
         ``{"wheelset1.y": 3e-3, "car.y.rate": 0.1}``, SI; the rest of the vehicle rolls at its design position.
     channels : str or sequence of str, optional
@@ -69,7 +71,7 @@ class Simulation:
     """
 
     def __init__(self, vehicle, *, speed, track=None, contact="linear", dt=1e-3, start=None, initial=None, channels=None, rate=None,
-                 markers=None, rho=RHO, tolerance=TOLERANCE, drive="held", commands=None, **forces):
+                 markers=None, rho=RHO, tolerance=TOLERANCE, drive="held", commands=None, faults=(), **forces):
         from railsym.contact import LinearContact
 
         _check_numbers(dt=dt, rho=rho, tolerance=tolerance)
@@ -85,6 +87,7 @@ class Simulation:
         integrator.set_channels(self.recorder.raw)
         q, u = self.parts.start(initial)
         self.command(commands or {}, q)
+        self._planned = _planned(faults, dt, Controls(self))
         status = integrator.start(0.0, q, u)
         row, sampled = integrator.sample()
         if status or sampled:
@@ -167,11 +170,12 @@ class Simulation:
             with _bar(total, self.dt, progress) as bar:
                 while self.ending.reason == "running" and (left := first + total - self.parts.integrator.report.steps) > 0:
                     done = self.parts.integrator.report.steps
+                    self._fail(controls, done)
                     for function, period in calls:
                         if done % period == 0:
                             function(controls)
                             self.parts.integrator.follow()
-                    count = min(left, block, *(period - done % period for _, period in calls))
+                    count = min(left, block, *(period - done % period for _, period in calls), *(step - done for step, _, _ in self._planned[:1]))
                     self._advance(count)
                     if sum(len(times) for times, _ in self._waiting) >= _ENOUGH:
                         self._hand_over(writer)
@@ -199,6 +203,12 @@ class Simulation:
             raise SimulationError(f"the samples before are in {self._file} only: go on with keep=\"file\" and the same writer")
         if keep == "file":
             self._file = writer.path
+
+    def _fail(self, controls, done):
+        """Let actuators fail whose time has come."""
+        while self._planned and self._planned[0][0] <= done:
+            _, element, kind = self._planned.pop(0)
+            controls.fault(element, kind)
 
     def _hand_over(self, writer):
         """Make channels of what waits, and write them."""
@@ -276,6 +286,17 @@ def simulate(vehicle, *, speed, duration, controllers=(), progress=False, save=N
             writer.info = simulation.info  # with what happened on the way
             writer.finish(simulation.ending, str(simulation.ending))
     return simulation.result()
+
+
+def _planned(faults, dt, controls):
+    """Faults as (step, element, kind), the first one first."""
+    planned = []
+    for time, element, kind in faults:
+        if not 0.0 <= time < np.inf:
+            raise SimulationError(f"fault of {element!r} at {time} s: a time from 0 s on is needed")
+        controls.check_fault(element, kind)
+        planned.append((round(time / dt), element, kind))
+    return sorted(planned, key=lambda fault: fault[0])
 
 
 def _check_numbers(dt, rho, tolerance):
