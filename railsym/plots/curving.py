@@ -86,7 +86,7 @@ def _limits(panels, found, order):
 def _legends(panels, found, wheels, sets):
     from matplotlib.lines import Line2D
 
-    for axes, names in ((panels[0, 1], wheels), (panels[2, 0], sets)):
+    for axes, names in ((panels[2, 1], wheels), (panels[2, 0], sets)):      # where curves leave room
         styles = line_styles(names)
         axes.legend(handles=[Line2D([], [], **(styles[name] | {"linestyle": "-"})) for name in names], labels=list(names), fontsize=7.5, frameon=False)
     handles, labels = [], []
