@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Studies that put the parts together, as the paper does: crossing a switch without anti-yaw dampers."""
+"""Studies that put the parts together, as the paper does: crossing a switch without anti-yaw dampers, an S-curve with active tilt."""
 
 from railsym.studies.switch import SWITCH, SwitchStudy, switch_study, variants
 from railsym.studies.switch_run import SwitchRun, switch_track

@@ -48,7 +48,7 @@ class FaultReport:
     Attributes
     ----------
     time, place : float
-        s, m
+        s; m, the last known one.
     fault : Fault
     state : State
         Of the controller from then on.
@@ -84,10 +84,13 @@ def reports(times, signals, outputs):
     names = list(OUTPUTS)
     masks, states = (np.asarray(outputs)[:, names.index(name)].astype(int) for name in ("faults", "state"))
     new = masks & ~np.concatenate([[0], masks[:-1]])
-    tilt = np.asarray(signals)[:, 4]
+    signals = np.asarray(signals)
+    tilt = signals[:, 4]
     found = []
     for k in np.flatnonzero(new):
         known = tilt[:k + 1][np.isfinite(tilt[:k + 1])]
         last = float(known[-1]) if known.size else 0.0
-        found += [FaultReport(float(times[k]), float(signals[k, 6]), fault, State(states[k]), last) for fault in Fault if new[k] & fault]
+        places = signals[:k + 1, 6][np.isfinite(signals[:k + 1, 6])]
+        place = float(places[-1]) if places.size else np.nan
+        found += [FaultReport(float(times[k]), place, fault, State(states[k]), last) for fault in Fault if new[k] & fault]
     return found

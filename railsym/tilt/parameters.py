@@ -154,6 +154,11 @@ class TiltParameters:
         """Latency in samples."""
         return round(self.latency * self.rate)
 
+    @property
+    def follow_delay(self):
+        """s, of slow motions in the reference model: 2 z / w."""
+        return self.reference_damping / (np.pi * self.reference_frequency)
+
     def samples(self, seconds):
         """Samples in a time, at least one."""
         return max(1, round(min(seconds * self.rate, 1e9)))

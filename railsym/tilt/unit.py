@@ -8,7 +8,7 @@ import numpy as np
 from railsym.errors import ControllerError
 from railsym.tilt.errors import TiltError
 from railsym.tilt.faults import OUTPUTS, reports
-from railsym.tilt.sensors import NAMES, NoiseSource, SensorSet
+from railsym.tilt.sensors import NoiseSource, SensorSet
 from railsym.tilt.signals import SIGNALS, Signals
 
 _CHUNK = 50          # samples between two calls of Python where the law is in C
@@ -73,6 +73,7 @@ class TiltUnit:
         signals = plant.read()
         angle = self._checked(time, self.law.step(time, Signals(*signals)))
         plant.command(angle)
+        signals = getattr(self.law, "consumed", None) or signals
         self._rows.append([time, *signals, *(getattr(self.law, "outputs", None) or [angle] + [0.0] * (len(OUTPUTS) - 1))])
 
     def _start(self, simulation):
@@ -129,8 +130,3 @@ class TiltUnit:
 
         rows = self.rows()
         return State(int(rows[-1, -2])) if len(rows) else State.NORMAL
-
-
-def sensor_names():
-    """Signals that pass a `Sensor`."""
-    return NAMES
