@@ -18,10 +18,11 @@ from railsym.cli_profiles import add_parser as add_profiles
 from railsym.cli_simulate import add_simulate
 from railsym.cli_study import add_study
 from railsym.cli_switch import add_switch
+from railsym.cli_tilt import add_tilt
 from railsym.cli_values import CommandError, criterion, numbers
 from railsym.errors import RailsymError
 
-_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate", "switch", "bifurcation", "curving", "study")
+_COMMANDS = ("stability", "modes", "damper", "vehicles", "profiles", "simulate", "switch", "bifurcation", "curving", "study", "tilt")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -87,7 +88,7 @@ def _parsed(arguments):
     if arguments and not arguments[0].startswith("-") and arguments[0] not in _COMMANDS:
         raise CommandError(f"there is no command {arguments[0]!r}{_near(arguments[0], _COMMANDS)}; there are {', '.join(_COMMANDS)}")
     parser, commands = _parser()
-    valued = ("stability", "modes", "simulate", "switch", "bifurcation")
+    valued = ("stability", "modes", "simulate", "switch", "bifurcation", "tilt")
     taking = _taking_values(commands.choices[arguments[0]]) if arguments and arguments[0] in valued else {}
     try:
         options, unknown = parser.parse_known_args(vehicle_first(arguments, taking))
@@ -126,6 +127,7 @@ def _parser():
     add_bifurcation(commands, _typed, _add_output).set_defaults(run=_run("cli_bifurcation", "run"))
     add_study(commands, _typed, _add_output).set_defaults(run=_run("cli_study", "run"))
     add_curving(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_curving", "run"))
+    add_tilt(commands, _typed, _add_vehicle, _add_output).set_defaults(run=_run("cli_tilt", "run"))
     return parser, commands
 
 

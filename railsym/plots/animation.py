@@ -54,7 +54,8 @@ class Animation:
     @property
     def message(self):
         """In a sentence."""
-        return (f"{self.path}: {self.frames} pictures of t = {self.start:.3g} to {self.end:.3g} s, {self.slowdown:.3g} times slower than life, "
+        pace = f"{self.slowdown:.3g} times slower" if self.slowdown >= 1.0 else f"{1.0 / self.slowdown:.3g} times faster"
+        return (f"{self.path}: {self.frames} pictures of t = {self.start:.3g} to {self.end:.3g} s, {pace} than life, "
                 f"motions times {self.factor:g}, {self.size / 1e6:.2f} MB")
 
 

@@ -121,4 +121,4 @@ def rails(run, wheel_loads):
     ratios = {item.name.rpartition(" ")[2]: abs(item.value) for item in found.assessed if item.name.startswith("Y/Q ")}
     sums = dict(sorted(sums.items()))
     return {"Y/Q": abs(found.worst("Y/Q").value), "unloading": abs(found.worst("unloading").value), "sum_Y": sums, "ratios": ratios,
-            "where": found.worst("Y/Q").name.rpartition(" ")[2], "limit Y/Q": found.worst("Y/Q").limit.value, "limit sum_Y": found.worst("sum Y").limit.value}
+            "where": found.worst("Y/Q").name.rpartition(" ")[2], "limit Y/Q": found.worst("Y/Q").limit, "limit sum_Y": found.worst("sum Y").limit}

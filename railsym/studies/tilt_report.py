@@ -72,7 +72,8 @@ def loads(study):
     head = ["case", "tilt, deg", "demand, deg", "body roll, deg", "force, kN", "power, kW", "work, kJ", "Y/Q", "unloading, %",
             *(f"sum Y {name.removeprefix('wheelset')}, kN" for name in study.cases[0].rails["sum_Y"])]
     limit = study.cases[0].rails
-    note = f"Y/Q on {study.cases[0].rails['where']} first; limits Y/Q {limit['limit Y/Q']:g}, sum Y {1e-3 * limit['limit sum_Y']:.1f} kN (recalled: no verdict)"
+    note = (f"limits: Y/Q {limit['limit Y/Q'].value:g} ({limit['limit Y/Q'].trust}), sum Y {1e-3 * limit['limit sum_Y'].value:.1f} kN ({limit['limit sum_Y'].trust}: "
+            f"recalled, no verdict); Y/Q is largest on {study.cases[0].rails['where']} in the passive case")
     return table(head, rows, left=(0,)) + "\n" + note
 
 
