@@ -109,18 +109,28 @@ def animate(run, vehicle, path, *, track=None, start=None, end=None, slowdown=No
     times, slowdown = _times(run, start, end, slowdown, frames)
     states = _states(run, vehicle, times)
     scene = _Scene(run, vehicle, track, times, states, factor)
-    shots = (scene.pixels(k, slowdown) for k in range(len(times)))
-    from railsym.progress import followed
-
-    shots = followed(shots, len(times), "pictures", progress)
-    write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
     try:
-        write(shots, path)
-    except OSError as error:
-        raise SimulationError(f"{path}: {error.strerror or error}") from None
+        write_shots((scene.pixels(k, slowdown) for k in range(len(times))), len(times), path, progress)
     finally:
         scene.close()
     return Animation(path, len(times), scene.factor, slowdown, float(times[0]), float(times[-1]), path.stat().st_size)
+
+
+def write_shots(shots, count, path, progress=False):
+    """Write pictures, (height, width, 4) bytes each, as GIF or MP4 at 16 a second.
+
+    Raises
+    ------
+    SimulationError
+        A file that cannot be written.
+    """
+    from railsym.progress import followed
+
+    write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
+    try:
+        write(followed(shots, count, "pictures", progress), path)
+    except OSError as error:
+        raise SimulationError(f"{path}: {error.strerror or error}") from None
 
 
 def check_path(path):
