@@ -174,7 +174,9 @@ class MotionLabels:
         if eigenvalue.real > 0:
             return "static divergence, " + self.owner[int(np.argmax(self.energy(shape)))]
         if damper.sum() >= max(creep, viscous) and damper.any():
-            return "Maxwell damper relaxation, " + self._damper_group(damper)
+            group = self._damper_group(damper)
+            lags = any(e.group == group and e.type == "actuator" for e in getattr(model.vehicle, "elements", None) or ())
+            return ("actuator lag, " if lags else "Maxwell damper relaxation, ") + group
         energy = self.energy(shape)
         body = self.owner[int(np.argmax(energy))]
         return f"wheel-rail creep, {body}" if creep >= viscous else f"overdamped motion, {body}"

@@ -231,9 +231,8 @@ def build_elements(group, values, curves):
         If an element acts along the line of two points that are not apart, or a curve does not fit its place.
     """
     parameters = _element_parameters(group, values, curves)
-    if group.type == "actuator" and parameters["rate_limit"] < np.inf and parameters["lag"] == 0.0:
-        raise Problem(f"{group.name}.rate_limit", parameters["rate_limit"], "what an actuator follows is limited in rate only where it lags behind "
-                      f"its command: give {group.name}.lag above 0 s too")
+    if group.type == "actuator":
+        _check_actuator(group, parameters)
     orientation = values.get(f"{group.name}.orientation")
     axes = _IDENTITY
     if orientation is not None:
@@ -250,6 +249,14 @@ def build_elements(group, values, curves):
         name = f"{group.name}.{instance.name}"
         elements.append(Element(name, group.name, group.type, first, second, axes, axis, parameters))
     return tuple(elements)
+
+
+def _check_actuator(group, parameters):
+    if parameters["rate_limit"] < np.inf and parameters["lag"] == 0.0:
+        raise Problem(f"{group.name}.rate_limit", parameters["rate_limit"], "what an actuator follows is limited in rate only where it lags behind "
+                      f"its command: give {group.name}.lag above 0 s too")
+    if group.mode == "length" and parameters["lag"] > 0.0 and parameters["stiffness"] == 0.0:
+        raise Problem(f"{group.name}.stiffness", 0.0, "an actuator that follows a commanded length needs a stiffness above 0 N/m")
 
 
 def _check_line(key, first, second):

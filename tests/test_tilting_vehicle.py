@@ -259,6 +259,14 @@ def test_a_rigid_mechanism_leaves_the_critical_speed():
     assert speeds[1] == pytest.approx(speeds[0], rel=0.008)  # the bolsters' own inertia about x and z is at their places
 
 
+def test_modes_tell_the_jacks_lag():
+    """Each jack is followed in 60 ms whatever the vehicle does: an eigenvalue of -1/T a jack."""
+    modes = rs.linearise(VEHICLE, 55.0, rs.LinearContact(conicity=0.2)).modes()
+    lags = [mode for mode in modes if mode.label == "actuator lag, tilt_actuator"]
+    assert len(lags) == 4
+    np.testing.assert_allclose([mode.eigenvalue for mode in lags], -1.0 / 0.06, rtol=1e-6)
+
+
 # --- what an inertial unit feels ------------------------------------------------------------------------------------------------
 
 def test_inertial_unit_on_straight_track():
@@ -285,25 +293,33 @@ def test_inertial_unit_in_a_steady_curve():
 
 
 def test_inertial_unit_in_a_transition():
-    """Roll rate V d(cant angle)/ds of the track and the body's own; the channel of the same point reads the same acceleration."""
-    track, speed, seen = curve(500.0, 0.12), 25.0, []
-    at = [9.5, 0.3, -0.9]
+    """Roll rate V d(cant angle)/ds of the track and the body's own; the channels of the same points read the same accelerations.
+
+    The channels come from the same formula written apart in NumPy; the body tilts meanwhile, so that every term is there.
+    """
+    track, seen, told = curve(500.0, 0.12), [], commands(np.radians(6.0))
+    units = {"frame": ("bogie1", [9.5, 0.3, -0.9]), "seat": ("car", [-6.0, 1.1, -1.9]), "axle": ("wheelset3", [-8.15, -0.4, -0.6])}
 
     def look(controls):
-        seen.append((controls.time, *np.concatenate(controls.imu("bogie1", at)), controls.rate("bogie1.roll"), controls.position("bogie1.yaw")))
+        for jack, length in told.items():
+            controls.command(jack, length)
+        seen.append((controls.time, *np.concatenate([part for unit in units.values() for part in controls.imu(*unit)]), controls.rate("bogie1.roll")))
 
-    run = rs.simulate(VEHICLE, speed=speed, track=track, start=40.0, duration=3.0, controllers=[(look, 100.0)], rate=100.0,
-                      channels=["unit.*"], markers={"unit": ("bogie1", at)})
-    time, *felt, own, yaw = np.array(seen).T
-    felt = np.array(felt)
-    for axis, name in enumerate(("ax", "ay", "az")):
-        np.testing.assert_allclose(felt[axis] + (9.81 if name == "az" else 0.0), run[f"unit.{name}"][:len(time)], atol=1e-9)
-    place = 40.0 + 9.5 + speed * time
+    run = rs.simulate(VEHICLE, speed=[(0.0, 22.0), (3.0, 28.0)], track=track, start=40.0, duration=3.0, controllers=[(look, 100.0)], rate=100.0,
+                      channels=["frame.*", "seat.*", "axle.*", "car.roll.rate", "V"], markers=units)
+    time, *felt, own = np.array(seen).T
+    felt = np.array(felt).reshape(3, 6, -1)
+    assert np.abs(run["car.roll.rate"]).max() > 0.08
+    for unit, values in zip(units, felt, strict=True):
+        for axis, name in enumerate(("ax", "ay", "az")):
+            np.testing.assert_allclose(values[axis] + (9.81 if name == "az" else 0.0), run[f"{unit}.{name}"][:len(time)], atol=1e-9)
+    speed = run["V"][:len(time)]
+    place = 40.0 + 9.5 + 22.0 * time + time ** 2
     cant = np.arcsin(np.clip((place - 60.0) / 100.0, 0.0, 1.0) * 0.12 / 1.5)
     inside = (place > 65.0) & (place < 124.0)
     rolls = speed * 0.12 / 1.5 / 100.0 / np.cos(cant)
-    np.testing.assert_allclose(felt[3][inside], (rolls + own)[inside], atol=1e-4)  # yaw against the track turns 1e-3 of V/R into it
-    assert rolls[0] > 0.015
+    np.testing.assert_allclose(felt[0, 3][inside], (rolls + own)[inside], atol=1e-4)  # yaw against the track turns 1e-3 of V/R into it
+    assert rolls[inside].min() > 0.015
 
 
 # --- errors ---------------------------------------------------------------------------------------------------------------------
@@ -344,6 +360,9 @@ def test_a_rate_limit_needs_a_lag(tmp_path):
     path = tmp_path / "hasty.toml"
     path.write_text(text.replace('lag = [0.06, "s"]\n', ""))
     with pytest.raises(VehicleFileError, match=r"tilt_actuator.rate_limit = 0.12: .* give tilt_actuator.lag above 0 s"):
+        rs.load_vehicle(path)
+    path.write_text(text.replace('stiffness = [1.0e7, "N/m"]', 'stiffness = [0, "N/m"]'))
+    with pytest.raises(VehicleFileError, match="tilt_actuator.stiffness = 0.0: .* needs a stiffness above 0 N/m"):
         rs.load_vehicle(path)
     path.write_text(text.replace('force_limit = [80, "kN"]', 'force_limit = [0, "kN"]'))
     with pytest.raises(VehicleFileError, match="tilt_actuator.force_limit.*above 0, inf for no limit"):

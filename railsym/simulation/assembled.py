@@ -190,7 +190,7 @@ class Assembled:
             rate = name.endswith(".rate")
             k = self.number(name.removesuffix(".rate"), "initial state")
             if rate and k >= self.second:
-                raise SimulationError(f"initial state: {name}: the rate of a Maxwell damper follows from its elongation")
+                raise SimulationError(f"initial state: {name}: the rate of an internal state follows from the state (Maxwell damper, actuator with a lag)")
             (u if rate else q)[k] = float(value)
         return q, u
 
