@@ -9,6 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
+from benchmarks.cases import cases_figures
 from benchmarks.contact import contact_figures
 from benchmarks.creep import creep_figures
 from benchmarks.curving import curving_figures
@@ -175,6 +176,6 @@ def _bench_records(model):
     return found
 
 
-GROUPS = {"derive": derivation, "import": imports, "linearise": linearisation, "figures": stability_figures,
+GROUPS = {"derive": derivation, "import": imports, "linearise": linearisation, "figures": stability_figures, "cases": cases_figures,
           "sensitivity": sensitivities, "creep": creep_figures, "dampers": damper_figures, "contact": contact_figures, "track": track_figures,
           "wheel_rail": wheel_rail_figures, "transient": transient_figures, "long_run": long_run_figures, "curving": curving_figures}

@@ -146,9 +146,9 @@ class Laws:
         return curve
 
     def set_numbers(self, numbers, record):
-        """Give some laws, by their numbers, the stiffness, damping and clearance (SI) of a record of the same kind and curves."""
+        """Give some laws, by their places, the numbers (SI) of a record of the same kind and curves; the preload stays."""
         for number in numbers:
-            for key in ("stiffness", "damping", "clearance"):
+            for key in _LAW_NUMBERS[1:]:
                 setattr(self.array[number], key, record.get(key, 0.0))
 
     def set_preload(self, values):

@@ -76,12 +76,14 @@ class CriticalSpeedSolver:
     def __getstate__(self):
         return {name: value for name, value in vars(self).items() if name != "_prepared"}     # C memory stays in its process
 
-    def model(self, changes: Mapping[str, Any], conicity: float | None = None):
+    def model(self, changes: Mapping[str, Any], conicity: float | None = None, contact=None):
         """The LinearModel of a case; arguments and errors as `solve`."""
-        contact = self.contact if conicity is None else replace(self.contact, conicity=float(conicity))
+        contact = self.contact if contact is None else contact
+        if conicity is not None:
+            contact = replace(contact, conicity=float(conicity))
         return self._prepared.linear_model(changes, contact)
 
-    def solve(self, changes: Mapping[str, Any], conicity: float | None = None, verify: bool = False) -> Stability:
+    def solve(self, changes: Mapping[str, Any], conicity: float | None = None, verify: bool = False, contact=None) -> Stability:
         """The lowest speed at which a case becomes unstable.
 
         Parameters
@@ -93,6 +95,8 @@ class CriticalSpeedSolver:
         verify : bool
             Compare with the dense eigenvalues of the whole model: at the critical speed and, for the real part, at five speeds
             below it.
+        contact : LinearContact, optional
+            Of this case, in place of the solver's.
 
         Returns
         -------
@@ -109,7 +113,7 @@ class CriticalSpeedSolver:
         ConvergenceError
             With `verify`: disagreement with the dense eigenvalues.
         """
-        model = self.model(changes, conicity)
+        model = self.model(changes, conicity, contact)
         result, = stability(model, (self.damping_ratio,), self.speed_range, self.frequency_band, lowest_only=True)
         return verify_stability(model, result, self.speed_range, lowest_only=True) if verify else result
 

@@ -76,9 +76,11 @@ class Statics:
     def __init__(self, model):
         self.model = model
         self._index, self._form = _deformations(model)
-        n = model.size + 1      # the last row and column take what does not exist
-        self._products = self._form[:, :, None] * self._form[:, None, :]
-        self._entries = (n * self._index[:, :, None] + self._index[:, None, :]).ravel()
+        products = self._form[:, :, None] * self._form[:, None, :]
+        existing = self._index < model.size
+        self._component, i, j = np.nonzero((products != 0.0) & existing[:, :, None] & existing[:, None, :])
+        self._product = products[self._component, i, j]
+        self._entry = model.size * self._index[self._component, i] + self._index[self._component, j]
         self._motions = _rigid_motions(model)
         self._free = ~(model.topology.first_order | model.topology.cyclic)
         self._wheelsets = [b for b in model.vehicle.bodies if b.kind == "wheelset"]
@@ -96,9 +98,8 @@ class Statics:
 
     def _matrix(self, stiffness):
         """Elastic stiffness sum k e e^T at the design position, (n, n)."""
-        n = self.model.size + 1
-        values = (self._products * stiffness[:, None, None]).ravel()
-        return np.bincount(self._entries, values, n * n).reshape(n, n)[:-1, :-1]
+        n = self.model.size
+        return np.bincount(self._entry, self._product * stiffness[self._component], n * n).reshape(n, n)
 
     def _displacement(self, stiffness, load):
         """Static displacement with the wheelsets held by the rails and free rigid motions held."""

@@ -84,6 +84,7 @@ class Model:
             six = element.type in BUSHINGS
             split["bushing" if six else "line" if element.axis is None else "axis"].append(element)
         self.bushings, self.laws = split["bushing"], [*split["line"], *split["axis"]]
+        self._lines = len(split["line"])
         self._pairs = {name: pairs(self.topology, elements) for name, elements in split.items()}
         self._law_tables = {}
         for name, elements in split.items():
@@ -157,8 +158,7 @@ class Model:
 
     def set_laws(self, rows, record):
         """Give line and axis elements the numbers of another law record of the same kind; ``rows`` counts in `laws`."""
-        lines = sum(e.axis is None for e in self.laws)
-        for name, first, after in (("line", 0, lines), ("axis", lines, len(self.laws))):
+        for name, first, after in (("line", 0, self._lines), ("axis", self._lines, len(self.laws))):
             inside = [row - first for row in rows if first <= row < after]
             if inside:
                 self._law_tables[name].set_numbers(inside, record)
@@ -183,8 +183,7 @@ class Model:
         """
         for k in range(6 if self.bushings else 0):
             self.assembly.set_input("bushing", f"f0_{k}", bushing_forces[:, k])
-        lines = sum(e.axis is None for e in self.laws)
-        for name, values in (("line", law_forces[:lines]), ("axis", law_forces[lines:])):
+        for name, values in (("line", law_forces[:self._lines]), ("axis", law_forces[self._lines:])):
             if self._law_tables[name] is not None:
                 self._law_tables[name].set_preload(values)
 

@@ -10,6 +10,7 @@ coordinates and spin angles are kept as they are.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -20,6 +21,7 @@ KEEP_ALL = 24          # second-order coordinates: a model this small is not wor
 _FREQUENCY, _SPEED = 2 * np.pi * 6.0, 20.0
 # static shapes are kept that change the square of a frequency like that by more than this share
 _ATTACHED = 0.1
+_LIGHT = 0.04          # share of the mass of a slow mode that the lag of a Maxwell element may make up for it to need no coordinate
 _DEPENDENT = 1e-8      # share of a unit vector outside the span of the others below which it is dropped
 
 
@@ -35,19 +37,30 @@ class Reduction:
         Real basis vectors.
     full : LinearModel
         The model that was reduced.
-    dropped, dropped_stiffness : ndarray, shapes (n, k) and (k,)
-        Mass-normalised modes left out and their omega^2, (rad/s)^2.
+    dropped : ndarray, shape (n, k)
+        What was left out: mass-normalised modes, and internal coordinates that follow without delay.
+    dropped_pencil : ndarray, shape (3, k)
+        Their K, C and M: omega^2, 0 and 1 of modes; stiffness, damping and 0 of internal coordinates.
+    lag : ndarray, shape (m, m)
+        In the mass matrix of `model`: what the internal coordinates that follow lag behind, to first order.
     """
 
     model: LinearModel
     basis: np.ndarray
     full: LinearModel
     dropped: np.ndarray
-    dropped_stiffness: np.ndarray
+    dropped_pencil: np.ndarray
+    lag: np.ndarray
+
+    @property
+    def next_frequency(self) -> float:
+        """Hz, of the slowest mode left out."""
+        modes = self.dropped_pencil[2] > 0.0
+        return float(np.sqrt(self.dropped_pencil[0, modes].min(initial=np.inf)) / (2 * np.pi))
 
     def expand(self, shape: np.ndarray) -> np.ndarray:
         """Reduced coordinates (m, ...) as coordinates of the full model (n, ...)."""
-        return _times(self.basis, shape) if shape.ndim == 2 else self.basis @ shape
+        return real_times(self.basis, shape) if shape.ndim == 2 else self.basis @ shape
 
     def correction(self, eigenvalue, speed, right, left):
         """First-order effect of the dropped modes on eigenvalues of the reduced model.
@@ -68,18 +81,30 @@ class Reduction:
         missing : ndarray, shape (n, k)
             What the dropped modes add to the full shapes.
         """
-        x, y, conjugate = self.expand(right), self.expand(left), eigenvalue.conj()
-        full, reduced, modes = self.full, self.model, self.dropped
-        mass, damping, stiffness = full.mass, full.damping(speed), full.stiffness
-        residual = _times(mass, x * eigenvalue**2) + _times(damping, x * eigenvalue) + _times(stiffness, x)
-        left_residual = _times(mass.T, y * conjugate**2) + _times(damping.T, y * conjugate) + _times(stiffness.T, y)
-        amplitude = -_times(modes.T, residual) / (self.dropped_stiffness[:, None] + eigenvalue**2)
+        reduced = self.model
+        onto, back = self._couplings
+        factor = np.array([eigenvalue**2, eigenvalue, eigenvalue * speed, eigenvalue / speed, np.ones_like(eigenvalue)])
+        parts = 5, self.dropped.shape[1], len(eigenvalue)
+        residual = (factor[:, None] * real_times(onto, right).reshape(parts)).sum(axis=0)
+        left_residual = (factor.conj()[:, None] * real_times(back, left).reshape(parts)).sum(axis=0)
+        stiffness, damping, mass = self.dropped_pencil[:, :, None]
+        amplitude = -residual / (stiffness + eigenvalue * damping + eigenvalue**2 * mass)
         slope = ((reduced.mass @ (right * (2 * eigenvalue)) + reduced.damping(speed) @ right) * left.conj()).sum(axis=0)
-        change = -(_times(modes.T, left_residual).conj() * amplitude).sum(axis=0) / slope
-        return change, _times(modes, amplitude)
+        lag = eigenvalue**2 * ((self.lag @ right) * left.conj()).sum(axis=0)
+        change = (lag - (left_residual.conj() * amplitude).sum(axis=0)) / slope
+        return change, real_times(self.dropped, amplitude)
+
+    @cached_property
+    def _couplings(self):
+        """D^T X B and D^T X^T B of the dropped modes D and the basis B for M, C0, C1, C2 and K, each stacked, (5 k, m)."""
+        full = self.full
+        matrices = full.mass, full.damping_constant, full.damping_speed, full.damping_inverse_speed, full.stiffness
+        onto = [self.dropped.T @ (matrix @ self.basis) for matrix in matrices]
+        back = [(self.dropped.T @ matrix.T) @ self.basis for matrix in matrices]
+        return np.vstack(onto), np.vstack(back)
 
 
-def _times(matrix, values):
+def real_times(matrix, values):
     """Real matrix times complex values, without a complex copy of the matrix."""
     parts = matrix @ np.hstack([values.real, values.imag])
     return parts[:, :values.shape[1]] + 1j * parts[:, values.shape[1]:]
@@ -103,10 +128,9 @@ def reduce_model(model: LinearModel, frequency_limit: float, extra: np.ndarray |
         With ``basis`` the identity when the model has at most `KEEP_ALL` coordinates with inertia.
     """
     moving = np.flatnonzero(~model.first_order & ~model.cyclic)
-    kept_alone = np.flatnonzero(model.first_order | model.cyclic)
     if len(moving) <= KEEP_ALL:
         nothing = np.zeros((model.size, 0))
-        return Reduction(model, np.eye(model.size), model, nothing, np.zeros(0))
+        return Reduction(model, np.eye(model.size), model, nothing, np.zeros((3, 0)), np.zeros((model.size, model.size)))
     square, modes, others = _elastic_modes(model, moving)
     slow = square < (2 * np.pi * frequency_limit) ** 2
     wanted = [modes[:, slow], _attachments(modes[:, slow], modes[:, ~slow], square[~slow], others)]
@@ -115,13 +139,64 @@ def reduce_model(model: LinearModel, frequency_limit: float, extra: np.ndarray |
         wanted.insert(0, translation[moving, None])
     if extra is not None:
         wanted.append(extra[moving])
-    shapes = _orthonormal(np.hstack(wanted), model.mass[np.ix_(moving, moving)])
-    basis = np.zeros((model.size, shapes.shape[1] + len(kept_alone)))
-    basis[moving, :shapes.shape[1]] = shapes
-    basis[kept_alone, shapes.shape[1] + np.arange(len(kept_alone))] = 1.0
-    dropped = np.zeros((model.size, np.count_nonzero(~slow)))
-    dropped[moving] = modes[:, ~slow]
-    return Reduction(_projected(model, basis, kept_alone), basis, model, dropped, square[~slow])
+    mass = model.mass[moving[:, None], moving]
+    shapes = _orthonormal(np.hstack(wanted), mass)
+    followers = _followers(model, moving, modes[:, slow]) if extra is None else _Followers.none(len(moving))
+    return _reduction(model, moving, shapes, (modes[:, ~slow], square[~slow]), followers, shapes.T @ (mass @ modes[:, slow]))
+
+
+def _reduction(model, moving, shapes, fast, followers, slow):
+    """Reduction on shapes (moving, s), the fast modes and the followers left out; slow modes in terms of the shapes (s, k)."""
+    alone = model.first_order | model.cyclic
+    alone[followers.index] = False
+    kept_alone, count, modes = np.flatnonzero(alone), shapes.shape[1], fast[0].shape[1]
+    basis = np.zeros((model.size, count + len(kept_alone)))
+    basis[moving, :count] = shapes
+    basis[followers.index, :count] = followers.motion @ shapes
+    basis[kept_alone, count + np.arange(len(kept_alone))] = 1.0
+    dropped = np.zeros((model.size, modes + len(followers.index)))
+    dropped[moving, :modes], dropped[followers.index, :modes] = fast[0], followers.motion @ fast[0]
+    dropped[followers.index, modes + np.arange(len(followers.index))] = 1.0
+    pencil = np.zeros((3, dropped.shape[1]))
+    pencil[0, :modes], pencil[2, :modes] = fast[1], 1.0
+    pencil[0, modes:], pencil[1, modes:] = followers.stiffness, followers.damping
+    lag = np.zeros((basis.shape[1], basis.shape[1]))
+    if len(followers.index):
+        lag[:count, :count] = slow @ followers.lag @ slow.T
+    return Reduction(_projected(model, basis, kept_alone, lag), basis, model, dropped, pencil, lag)
+
+
+@dataclass(frozen=True, eq=False)
+class _Followers:
+    """Internal coordinates that follow the motion of the others: s = motion x, behind by the time damping/stiffness."""
+
+    index: np.ndarray
+    motion: np.ndarray        # (f, moving)
+    stiffness: np.ndarray
+    damping: np.ndarray
+    lag: np.ndarray           # (k, k) over the slow modes, - (motion modes)^T damping^2/stiffness (motion modes)
+
+    @classmethod
+    def none(cls, moving):
+        return cls(np.zeros(0, int), np.zeros((0, moving)), np.zeros(0), np.zeros(0), None)
+
+
+def _followers(model: LinearModel, moving, slow) -> _Followers:
+    """Internal coordinates of stiff Maxwell elements, coupled to no other one.
+
+    The force of such an element is damping x rate less damping^2/stiffness x acceleration and so on: it acts on slow modes like a
+    damper and a small negative mass.
+    """
+    internal = np.flatnonzero(model.first_order)
+    blocks = [matrix[internal[:, None], internal] for matrix in (model.stiffness, model.damping_constant)]
+    stiffness, damping = (block.diagonal() for block in blocks)
+    alone = np.all([np.count_nonzero(block, axis=1) == 1 for block in blocks], axis=0) & (stiffness > 0.0)
+    motion = -model.stiffness[internal[:, None], moving] / np.where(alone, stiffness, 1.0)[:, None]
+    elongation = motion @ slow
+    inertia = damping**2 / np.where(alone, stiffness, 1.0)
+    follows = np.flatnonzero(alone & (inertia * (elongation**2).max(axis=1, initial=0.0) < _LIGHT))
+    lag = -elongation[follows].T @ (inertia[follows, None] * elongation[follows])
+    return _Followers(internal[follows], motion[follows], stiffness[follows], damping[follows], lag)
 
 
 def _attachments(slow, fast, square, others):
@@ -182,7 +257,7 @@ def _orthonormal(shapes, mass):
     return shapes @ (directions[:, keep] / np.sqrt(square[keep]))
 
 
-def _projected(model: LinearModel, basis, kept_alone) -> LinearModel:
+def _projected(model: LinearModel, basis, kept_alone, lag) -> LinearModel:
     count = basis.shape[1]
     first_order, cyclic = np.zeros(count, bool), np.zeros(count, bool)
     first_order[count - len(kept_alone):] = model.first_order[kept_alone]
@@ -192,4 +267,5 @@ def _projected(model: LinearModel, basis, kept_alone) -> LinearModel:
         translation = np.linalg.lstsq(basis, translation, rcond=None)[0] if translation.any() else np.zeros(count)
     names = tuple(f"basis{i}" for i in range(count - len(kept_alone))) + tuple(model.coordinates[i] for i in kept_alone)
     matrices = (model.mass, model.stiffness, model.damping_constant, model.damping_speed, model.damping_inverse_speed)
-    return LinearModel(names, *(basis.T @ (matrix @ basis) for matrix in matrices), first_order, cyclic, translation=translation)
+    mass, *others = (basis.T @ (matrix @ basis) for matrix in matrices)
+    return LinearModel(names, mass + lag, *others, first_order, cyclic, translation=translation)

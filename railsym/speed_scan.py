@@ -10,6 +10,7 @@ crossing on the full matrices, so a reported speed owes nothing to the reduction
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -17,14 +18,18 @@ from railsym.constant_speed import chain_length, deflate
 from railsym.errors import ConvergenceError
 from railsym.linear_model import LinearModel
 from railsym.polish import EigenPoint, polish_crossing, polish_eigenvalue
-from railsym.reduction import Reduction, reduce_model
+from railsym.reduction import Reduction, real_times, reduce_model
 
-_FIRST_STEP = 0.5          # in log(speed): eight intervals from 5 to 250 m/s
+FIRST_STEP = 1.0           # in log(speed): four intervals from 5 to 250 m/s
+_SHORT_STEP = 0.2          # in log(speed): a step towards a crossing that is expected ahead is not shorter than this
+_BEYOND = 0.08             # in log(speed): how far beyond an expected crossing such a step goes, besides a tenth of its length
+_ENRICHED = 3              # times that a scan begins anew with a better basis
 _SMALLEST_STEP = 2e-3      # in log(speed): paths that are not resolved at 0.2 % of the speed are reported
 _SIMILAR = 0.5             # product of two biorthogonalities: 1 for one and the same mode
 _WATCH = 0.12              # modes within this of the highest damping ratio asked for are followed closely
 _SMOOTH = 0.05             # kink of a path, relative to the eigenvalue, that similar vectors make credible
 _CLEAR = 0.005             # kink so small that the vectors need not be alike: nearly equal modes mix freely
+_PLACED = 0.1              # of the interval, that a kink may shift a crossing of a path that runs nearly along the criterion
 _ATTEMPTS = 3              # modes of like eigenvalue that are tried when Newton's method goes astray
 _SAME = 1e-8               # relative distance of polished crossings that are one: a hundred times what Newton leaves
 _NEUTRAL = 1e-9            # |Re lambda| / |lambda| of a mode without damping, after rounding
@@ -44,13 +49,22 @@ class ScanNode:
     slope: np.ndarray                 # d(eigenvalue)/d(log V)
     state_right: np.ndarray
     state_left: np.ndarray            # scaled to state_left^H state_right = 1
-    right: np.ndarray
-    left: np.ndarray
     divergent: np.ndarray             # real positive eigenvalues
+    reduced: LinearModel
 
-    @property
+    @cached_property
     def position(self) -> float:
         return float(np.log(self.speed))
+
+    @cached_property
+    def right(self):
+        """T x = 0 in the reduced model."""
+        return self.reduced.shape_vector(self.state_right, self.eigenvalue)
+
+    @cached_property
+    def left(self):
+        """y^H T = 0 in the reduced model, with y^H (dT/dlambda) x = 1."""
+        return self.reduced.left_vector(self.state_left)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +112,21 @@ class SpeedScan:
     crossings: list = field(default_factory=list)
     nodes: list = field(default_factory=list)
     warnings: list = field(default_factory=list)
+
+    def walk(self, speed_range, enough, first_step) -> None:
+        """Follow all paths from the lowest speed up, to the highest one or until there is enough."""
+        low, high = np.log(speed_range)
+        widest = (high - low) / max(1, int(np.ceil((high - low) / first_step)))
+        node = self.node(speed_range[0])
+        self.nodes.append(node)
+        paths = np.arange(len(node.eigenvalue))
+        while node.position < high - 1e-9:
+            step = widest if enough is None else _step_ahead(node, self.damping_ratios[-1], widest)
+            ahead = self.node(np.exp(min(node.position + step, high)))
+            paths = self.follow(node, ahead, paths)
+            node = ahead
+            if enough is not None and enough(self):
+                break
 
     def polish(self, crossing: Crossing, taken=()) -> EigenPoint | None:
         """The crossing on the full matrices.
@@ -149,12 +178,11 @@ class SpeedScan:
         reduced = self.reduction.model
         deflated = deflate(reduced, speed, self.known)
         value, right, left, divergent = _oscillations(deflated.matrix)
-        right, left = deflated.restore(value, right, left)
+        if self.known:
+            right, left = deflated.restore(value, right, left)
         left = left / (left.conj() * right).sum(axis=0).conj()
-        x, y = reduced.shape_vector(right, value), reduced.left_vector(left)
-        # y^H (dT/dlambda) x is the product of the two states, so 1
-        slope = -value * ((reduced.damping_slope(speed) @ x) * y.conj()).sum(axis=0) * speed
-        return ScanNode(float(speed), value, slope, right, left, x, y, divergent)
+        slope = (real_times(reduced.state_matrix_slope(speed), right) * left.conj()).sum(axis=0) * speed
+        return ScanNode(float(speed), value, slope, right, left, divergent, reduced)
 
     def follow(self, first, second, paths):
         """Resolve one interval, recursively; returns the path number of each mode of the second node."""
@@ -198,8 +226,21 @@ def excess(eigenvalue, damping_ratio):
 def _step_to(node, mode, damping_ratio):
     """Step in log(speed) to a criterion along the tangent of a mode, at most a tenth."""
     value, slope = node.eigenvalue[mode], node.slope[mode]
-    rate = slope.real + damping_ratio * (value.conjugate() * slope).real / abs(value)
+    rate = _rate(value, slope, damping_ratio)
     return float(np.clip(-excess(value, damping_ratio) / rate, -0.1, 0.1)) if rate else 0.0
+
+
+def _rate(value, slope, damping_ratio):
+    """d(excess)/d(log V)."""
+    return slope.real + damping_ratio * (value.conj() * slope).real / np.abs(value)
+
+
+def _step_ahead(node, damping_ratio, widest):
+    """Step in log(speed) to just beyond the crossing that comes first along the tangents, or the widest one."""
+    g, rate = excess(node.eigenvalue, damping_ratio), _rate(node.eigenvalue, node.slope, damping_ratio)
+    coming = (g < 0) & (rate > 0)
+    first = (-g[coming] / rate[coming]).min(initial=np.inf)
+    return min(widest, max(_SHORT_STEP, 1.1 * first + _BEYOND))
 
 
 def is_below(eigenvalue, damping_ratio):
@@ -207,7 +248,7 @@ def is_below(eigenvalue, damping_ratio):
     return excess(eigenvalue, damping_ratio) > _NEUTRAL * np.abs(eigenvalue)
 
 
-def scan_speeds(model: LinearModel, damping_ratios, speed_range, frequency_limit) -> SpeedScan:
+def scan_speeds(model: LinearModel, damping_ratios, speed_range, frequency_limit, enough=None, first_step=FIRST_STEP) -> SpeedScan:
     """Follow the oscillatory modes of a model over speed and find where they cross damping ratios.
 
     Parameters
@@ -220,39 +261,39 @@ def scan_speeds(model: LinearModel, damping_ratios, speed_range, frequency_limit
         m/s.
     frequency_limit : float
         Hz, up to which elastic modes enter the reduced model.
+    enough : callable, optional
+        Asked with the scan after every interval whether it may end there; steps then go to the crossings of the largest ratio.
+    first_step : float
+        Of log(speed): intervals are not wider.
 
     Returns
     -------
     SpeedScan
+        Its basis is enriched, and the scan begun anew, where the dropped modes matter.
     """
-    low, high = np.log(speed_range)
-    speeds = np.exp(np.linspace(low, high, 1 + max(1, int(np.ceil((high - low) / _FIRST_STEP)))))
-    scan = SpeedScan(model, reduce_model(model, frequency_limit), tuple(damping_ratios), chain_length(model, speed_range[0]))
-    nodes = _first_nodes(scan, speeds)
-    scan.nodes.append(nodes[0])
-    paths = np.arange(len(nodes[0].eigenvalue))
-    for first, second in zip(nodes, nodes[1:]):
-        paths = scan.follow(first, second, paths)
+    reduction, missing = reduce_model(model, frequency_limit), []
+    known = chain_length(model, speed_range[0])
+    for attempt in range(_ENRICHED + 1):
+        scan = SpeedScan(model, reduction, tuple(damping_ratios), known)
+        scan.walk(speed_range, enough, first_step)
+        lacking = _missing(scan) if attempt < _ENRICHED else []
+        if not lacking:
+            break
+        missing += lacking
+        shapes = np.column_stack([part for shape in missing for part in (shape.real, shape.imag)])
+        reduction = reduce_model(model, reduction.next_frequency, _main_directions(shapes, model.mass))
     scan.crossings.sort(key=lambda crossing: crossing.position)
     return scan
 
 
-def _first_nodes(scan: SpeedScan, speeds):
-    """Nodes at the first speeds; the basis is enriched, once, where the dropped modes matter."""
-    probes = {k: scan.node(speeds[k]) for k in (0, len(speeds) // 2, len(speeds) - 1)}
-    missing = [shape for node in probes.values() for shape in _missing(scan, node)]
-    if missing:
-        shapes = np.column_stack([part for shape in missing for part in (shape.real, shape.imag)])
-        limit = np.sqrt(scan.reduction.dropped_stiffness.min()) / (2 * np.pi)
-        scan.reduction = reduce_model(scan.model, limit, _main_directions(shapes, scan.model.mass))
-        probes = {}
-    return [probes[k] if k in probes else scan.node(speed) for k, speed in enumerate(speeds)]
+def _missing(scan: SpeedScan) -> list:
+    """What the dropped modes add to shapes of watched modes that they move too much, at the first, a middle and the last speed."""
+    nodes = scan.nodes if scan.reduction.dropped.shape[1] else []
+    return [shape for node in dict.fromkeys(nodes[k] for k in (0, len(nodes) // 2, -1) if nodes) for shape in _missing_at(scan, node)]
 
 
-def _missing(scan: SpeedScan, node):
-    """What the dropped modes add to the shapes of watched modes, where they move the eigenvalue too much."""
-    if not scan.reduction.dropped.shape[1]:
-        return []
+def _missing_at(scan: SpeedScan, node):
+    """What the dropped modes add to the shapes of watched modes at one speed, where they move the eigenvalue too much."""
     watched = np.flatnonzero(excess(node.eigenvalue, max(scan.damping_ratios) + _WATCH) > 0)
     value = node.eigenvalue[watched]
     change, missing = scan.reduction.correction(value, node.speed, node.right[:, watched], node.left[:, watched])
@@ -316,6 +357,7 @@ def examine(first: ScanNode, second: ScanNode, pairs, damping_ratios, paths):
     resolved = resolved and not (grazing | (count > 1)).any()
     for c, k, path in zip(*np.nonzero(changes)):
         before, after = g[c, k, path], g[c, k + 1, path]
+        resolved = resolved and 0.25 * kink[path] < _PLACED * abs(after - before) / (_GRID[k + 1] - _GRID[k])
         t = _GRID[k] + (_GRID[k + 1] - _GRID[k]) * before / (before - after)
         crossings.append(Crossing(damping_ratios[c], int(np.sign(after)), first.position + t * (second.position - first.position),
                                   complex(_at(coefficients[:, path], t)), int(paths[i[path]]), ((first, i[path]), (second, j[path]))))

@@ -10,19 +10,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from railsym.errors import ConvergenceError, ModelError
 from railsym.linear_model import LinearModel
 from railsym.mode_labels import MotionLabels
-from railsym.speed_scan import Crossing, SpeedScan, is_below, is_same, scan_speeds
+from railsym.speed_scan import FIRST_STEP, Crossing, SpeedScan, is_below, is_same, scan_speeds
 from railsym.symmetry import Part, split
 
 FREQUENCY_BAND = (0.3, 20.0)      # Hz, of hunting and of the car body on its suspension
 # Hz: elastic modes up to here, or 1.25 times the upper end of the band, make the first reduced model. Hunting at 10 Hz is then
-# within 1 % already; a scan that leaves anything open is repeated with twice the limit.
+# within 1 % already; a scan that leaves anything open is repeated with twice the limit and half the step.
 _BASIS, _LEAST_BASIS, _REPEATS = 1.25, 25.0, 3
+_AHEAD = 0.05                     # in log(speed): how far a scan that ends early goes beyond the crossing that it ends for, at least
 _NEAR = 0.01                      # crossings this near each other, relatively, may swap places when polished, at least
 _LATERAL = 0.1                    # share of the kinetic energy in y, yaw and roll of a motion that takes part in hunting
 
@@ -136,13 +138,18 @@ def stability(model: LinearModel, damping_ratios: Sequence[float] = (0.0,), spee
     ratios = tuple(dict.fromkeys((0.0,) + tuple(damping_ratios)))
     parts, labels = split(model), MotionLabels.of(model)
     limit = max(_BASIS * frequency_band[1], _LEAST_BASIS)
+    settled = partial(_settled, labels, frequency_band) if lowest_only and len(damping_ratios) == 1 else None
+    step = FIRST_STEP
     for _ in range(_REPEATS):
-        lateral, others = _scan_parts(parts, ratios, speed_range, limit)
+        lateral, others = _scan_parts(parts, ratios, speed_range, limit, step, settled, 0.0 in damping_ratios)
         searches = [_Search(z, [lateral] + (others if z == 0.0 else []), labels, frequency_band) for z in damping_ratios]
         results = tuple(search.result(speed_range, all_modes, lowest_only) for search in searches)
-        if not any(scan.warnings for _, scan in [lateral, *others]):
+        if settled and not searches[0].stands(speed_range):
+            settled = None
+        elif not any(scan.warnings for _, scan in [lateral, *others]):
             break
-        limit *= 2.0
+        else:
+            limit, step = 2.0 * limit, 0.5 * step
     return results
 
 
@@ -156,12 +163,18 @@ def _check(damping_ratios, speed_range, frequency_band):
             raise ModelError(f"damping_ratio {z}: a number from 0 up to, not including, 1 is needed; 5 % is 0.05")
 
 
-def _scan_parts(parts, ratios, speed_range, limit):
+def _scan_parts(parts, ratios, speed_range, limit, step, settled, all_parts):
     """Scan the part in which hunting lives for every criterion, the other one for real part = 0 where it could be unstable."""
     first, *rest = parts
-    lateral = (first, scan_speeds(first.model, ratios, speed_range, limit))
-    others = [(part, scan_speeds(part.model, (0.0,), speed_range, limit)) for part in rest if not is_dissipative(part.model)]
-    return lateral, others
+    rest = [part for part in rest if all_parts and not is_dissipative(part.model)]
+    scans = [(part, scan_speeds(part.model, asked, speed_range, limit, settled and partial(settled, part), step))
+             for part, asked in [(first, ratios)] + [(part, (0.0,)) for part in rest]]
+    return scans[0], scans[1:]
+
+
+def _settled(labels, frequency_band, part, scan) -> bool:
+    """Does an unfinished scan hold the critical speed of a part, whatever comes beyond its end?"""
+    return _Search(scan.damping_ratios[-1], [(part, scan)], labels, frequency_band).settled
 
 
 def is_dissipative(model: LinearModel) -> bool:
@@ -211,7 +224,7 @@ class _Search:
 
     def __init__(self, damping_ratio, scans, labels, frequency_band):
         self.damping_ratio, self.scans, self.labels, self.band = damping_ratio, scans, labels, frequency_band
-        self.notes = []
+        self.notes, self.open = [], 0       # paths below the criterion from the start that neither recover nor turn unstable
         self.events = [_Event(c, part, scan) for part, scan in scans for c in scan.crossings
                        if c.damping_ratio == damping_ratio and self._counts(part, scan, *c.nearest, c.eigenvalue)]
         self.unstable = self._unstable_at_start()
@@ -255,6 +268,7 @@ class _Search:
             self.notes.append(f"{name}: already {self._state()} at the lowest speed, {low:.4g} m/s")
             return True
         if self.damping_ratio > 0.0:
+            self.open += bool(np.isinf(min(recovers, grows)))
             until = f"up to {np.exp(recovers):.4g} m/s" if np.isfinite(recovers) else "over the whole range"
             self.notes.append(f"{name}: {self._state()} {until}, not counted")
         return False
@@ -268,6 +282,21 @@ class _Search:
             return bool(is_below(scan.polish_start(path).eigenvalue, 0.0))
         except ConvergenceError:
             return True
+
+    @property
+    def settled(self) -> bool:
+        """Would more of the range leave the critical speed as it is?
+
+        Modes below the criterion from the start must have recovered or turned unstable: that tells whether they count.
+        """
+        reached = min(scan.nodes[-1].position for _, scan in self.scans) - _AHEAD
+        return bool(self.unstable) or not self.open and any(e.found.direction > 0 and e.position < reached for e in self.events)
+
+    def stands(self, speed_range) -> bool:
+        """Do the scans go far enough beyond the critical speed, as it was polished, for nothing before it to be missed?"""
+        ends = [scan.nodes[-1].position for _, scan in self.scans]
+        onset = min((e.position for e in self.events if e.point is not None and e.found.direction > 0), default=np.inf)
+        return bool(self.unstable) or all(end > min(np.log(speed_range[1]) - 1e-9, onset + self._swapping_distance()) for end in ends)
 
     def _state(self):
         return f"below {100 * self.damping_ratio:g} % damping" if self.damping_ratio else "unstable"
