@@ -265,3 +265,36 @@ def test_what_a_file_cannot_say_is_named(old, new, text, tmp_path):
     with pytest.raises(rs.RailsymError) as error:
         load(path)
     assert text in str(error.value) and "wrong.toml" in str(error.value)
+
+
+def test_speed_comfort_and_derailment_at_once(tmp_path):
+    """Critical speed, a ride over irregular track and a curve, as objectives and a constraint of one front; each number as the analyses give it alone."""
+    text = SMALL + """
+[optimise.trade]
+maximise = "worn.speed"
+minimise = ["ride.comfort.N_MV"]
+population = 4
+generations = 1
+[optimise.trade.variables]
+"secondary_lateral_damper.damping" = { between = [[5, 80], "kN*s/m"], scale = "log" }
+"primary.stiffness.0" = { between = [[2, 8], "MN/m"] }
+[optimise.trade.constraints]
+"curve.derailment.YQ" = { at_most = [0.8, "-"] }
+[optimise.trade.analyses]
+worn = { kind = "critical_speed", conicity = 0.4 }
+ride = { kind = "transient", speed = [40, "m/s"], duration = [6, "s"], irregularity = "erri_b176_low", criteria = ["comfort"] }
+curve = { kind = "transient", speed = [20, "m/s"], duration = [9, "s"], track = "s_curve_500", criteria = ["derailment"] }
+"""
+    (tmp_path / "s.toml").write_text(text.replace("cases = 24", "cases = 2"), encoding="utf-8")
+    campaign = load(tmp_path / "s.toml")
+    front = campaign.run(tmp_path / "s.nc").optimised[0].found
+    assert front.failed == 0 and front.evaluations == 4 and len(front) >= 1
+    from railsym.sweep import Transient
+    from railsym.sweep.worker import Case
+
+    changes = dict(zip(front.problem.names, map(float, front.values[0])))
+    curve = Transient(speed=20.0, duration=9.0, track="s_curve_500", criteria=("derailment",)).solver(campaign.study.base())
+    assert front.outputs[0]["curve.derailment.YQ"] == curve(Case(campaign.study.base(), changes, {}))["derailment.YQ"]
+    assert 0.0 < front.outputs[0]["curve.derailment.YQ"] < 0.8 and front.outputs[0]["ride.comfort.N_MV"] > 0.0
+    # stiffer lateral dampers of the two that are otherwise alike would shake more: the spread is there to be traded
+    assert np.ptp([case.outputs["ride.comfort.N_MV"] for case in front.cases]) > 0.01

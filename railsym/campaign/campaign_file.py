@@ -48,7 +48,7 @@ def load(path):
         optimise = own.get("optimise", {})
         if not isinstance(optimise, dict) or not all(isinstance(table, dict) for table in optimise.values()):
             raise CampaignError("[optimise]: optimisations have names, write [optimise.damper]")
-        optimisations = tuple(read_optimisation(name, table, study) for name, table in optimise.items())
+        optimisations = tuple(read_optimisation(name, table, study, path.parent) for name, table in optimise.items())
     except RailsymError as error:
         raise CampaignError(f"study file {path}: {error}") from None
     title = own.get("title") or f"{study.loaded.name}{' ' + study.configuration if study.configuration else ''}: {study.analysis.kind.replace('_', ' ')}"

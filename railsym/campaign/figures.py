@@ -79,7 +79,8 @@ def _distribution(found):
                    lambda: plots.plot_probability(values, probability=probability, form=form, **_named(found)))]
     if probability is not None:
         made.append(Figure("convergence", "How the probability settled", "Share of cases below the limit as they came in, in the order of their numbers.",
-                           ("study",), lambda: plots.plot_convergence(values, probability.limit, confidence=probability.confidence, unit=_named(found)["unit"])))
+                           ("study",), lambda: plots.plot_convergence(values, probability.limit, confidence=probability.confidence,
+                                                                      unit=_named(found)["unit"])))
     return made
 
 
@@ -136,8 +137,8 @@ def _optimised(found, one):
         made.append(Figure(f"{name}_map", f"Designs looked at: {name}", "Objective between the designs that were computed; the best is marked.", source,
                            lambda: _design_map(one.found)))
     if one.recheck is not None:
-        made.append(Figure(f"{name}_recheck", f"Before and after: {name}", "The study with its tolerances about the vehicle's own design, and about the optimum.",
-                           ("study", f"recheck.{name}"), lambda: _before_after(found, one)))
+        made.append(Figure(f"{name}_recheck", f"Before and after: {name}",
+                           "The study with its tolerances about the vehicle's own design, and about the optimum.", ("study", f"recheck.{name}"), lambda: _before_after(found, one)))
     return made
 
 
@@ -164,7 +165,8 @@ def _before_after(found, one):
     before, after = (factor * v[~np.isnan(v)] for v in (found.values()[0], values_of(one.recheck, found.output)[0]))
     edges = np.histogram_bin_edges(np.concatenate([before, after]), 40)
     for values, colour, text in ((before, GREY, "as it is"), (after, BLUE, f"optimum of {one.optimisation.name}")):
-        axes.hist(values, edges, density=True, color=colour, alpha=0.6, label=f"{text}: mean {values.mean():.4g}, 5 % below {np.quantile(values, 0.05):.4g} {unit}")
+        label = f"{text}: mean {values.mean():.4g}, 5 % below {np.quantile(values, 0.05):.4g} {unit}"
+        axes.hist(values, edges, density=True, color=colour, alpha=0.6, label=label)
     if limit is not None:
         axes.axvline(limit, color=BLACK, linewidth=1.2, label=f"limit {limit:.4g} {unit}")
     tidy(axes, labelled(found.output, found.results.unit(found.output)), f"density, 1/({unit})" if unit else "density")

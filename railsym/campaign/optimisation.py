@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from pathlib import Path
 
 import numpy as np
 
@@ -53,7 +54,7 @@ class Optimisation:
         return method(self.problem, history=history, resume=resume, executor=executor, follow=follow, **self.options)
 
 
-def read(name, table, study):
+def read(name, table, study, folder=None):
     """`Optimisation` from its table.
 
     Raises
@@ -62,7 +63,7 @@ def read(name, table, study):
     """
     where = f"[optimise.{name}]"
     known(where, table, _KEYS)
-    analyses = _analyses(where, table.get("analyses", {}))
+    analyses = _analyses(where, table.get("analyses", {}), folder)
     given = analyses or {"": study.analysis}
     outputs = {f"{prefix}.{n}" if prefix else n: out.unit for prefix, a in given.items() for n, out in a.outputs(study.base()).items() if not out.text}
     inputs = {n: one for a in given.values() for n, one in a.inputs(study.base()).items()}
@@ -92,12 +93,12 @@ def _table(where, key, table):
     return table[key]
 
 
-def _analyses(where, table):
+def _analyses(where, table, folder):
     from railsym.sweep.analysis import from_table
     from railsym.sweep.errors import SweepError
 
     try:
-        return {name: from_table(entry) for name, entry in table.items()}
+        return {name: from_table(entry, folder) for name, entry in table.items()}
     except SweepError as error:
         raise CampaignError(f"{where}.analyses: {error}") from None
 
@@ -196,10 +197,13 @@ def tolerances_of(study, variables):
 
 
 def _description(study, analyses, robust):
-    from railsym.sweep.analysis import to_table
-
+    """What the outputs of a case depend on, the content of files included."""
     from hashlib import sha256
+
+    from railsym.sweep.analysis import to_table
 
     content = {"study": study.hash} if robust else {"vehicle_file": sha256(study.path.read_bytes()).hexdigest(), "configuration": study.configuration,
                                                     "set": study.set}
-    return content | {"analyses": {n: to_table(a) for n, a in analyses.items()} or to_table(study.analysis), "robust": robust}
+    files = {getattr(a, one.name) for a in [*analyses.values(), study.analysis] for one in fields(a) if one.metadata.get("path")}
+    digests = {str(f): sha256(Path(f).read_bytes()).hexdigest() for f in files if f is not None and Path(f).is_file()}
+    return content | {"analyses": {n: to_table(a) for n, a in analyses.items()} or to_table(study.analysis), "robust": robust, "files": digests}

@@ -91,20 +91,23 @@ def _headline(found, sources):
 def _statistics(found, numbers, unit, source):
     """Table of what the study gave, with the cases of the extremes."""
     cases = extremes(found.results, found.output)
-    rows = [[name, value, unit if isinstance(value, float) else "", f"case {cases[name]}" if name in cases else "all cases"] for name, value in numbers.items()]
+    rows = [[name, value, unit if isinstance(value, float) else "", f"case {cases[name]}" if name in cases else "all cases"]
+            for name, value in numbers.items()]
     return f"<h3>{escape(found.output)} of the study {mark(source)}</h3>\n" + table(["", "value", "unit", "from"], rows)
 
 
 def _optimum_cards(found, one, sources, unit):
     source = sources[f"optimise.{one.optimisation.name}"]
     if one.optimisation.pareto:
-        return [_card(str(len(one.found)), "design" if len(one.found) == 1 else "designs", f"on the Pareto front {one.optimisation.name}, of {one.found.evaluations} cases", source)]
+        count = len(one.found)
+        return [_card(str(count), "design" if count == 1 else "designs", f"on the Pareto front {one.optimisation.name}, of {one.found.evaluations} cases", source)]
     objective = one.found.problem.objectives[0]
     factor, text = shown(objective.unit)
     cards = [_card(number(factor * one.found.objective), text, f"{objective.name} at the optimum {one.optimisation.name}", source)]
     if one.probability is not None:
-        cards.append(_card(number(100 * one.probability.value, 3), "%", f"of cases below {number(shown(found.results.unit(found.output))[0] * one.probability.limit)} "
-                           f"{unit} with the optimum {one.optimisation.name}", sources[f"recheck.{one.optimisation.name}"]))
+        limit = shown(found.results.unit(found.output))[0] * one.probability.limit
+        cards.append(_card(number(100 * one.probability.value, 3), "%", f"of cases below {number(limit)} {unit} with the optimum {one.optimisation.name}",
+                           sources[f"recheck.{one.optimisation.name}"]))
     return cards
 
 
@@ -113,8 +116,8 @@ def _figures(found, sources):
     for figure in found.figures():
         image, wide = picture(figure.draw(), f"{figure.title}. {figure.caption}")
         marks = ", ".join(mark(sources[name]) for name in figure.sources if name in sources)
-        parts.append(f'<figure{" class=wide" if wide else ""} id="figure-{figure.name}">{image}<figcaption><b>{escape(figure.title)}.</b> {escape(figure.caption)} '
-                     f"Source: {marks}.</figcaption></figure>\n")
+        parts.append(f'<figure{" class=wide" if wide else ""} id="figure-{figure.name}">{image}<figcaption><b>{escape(figure.title)}.</b> '
+                     f"{escape(figure.caption)} Source: {marks}.</figcaption></figure>\n")
     return f'<div class="figures">{"".join(parts)}</div>\n' if parts else "<p>No case has a value to draw.</p>\n"
 
 
@@ -127,10 +130,11 @@ def _uncertainty(found, sources):
         f = u.form
         order = np.argsort(-f.importance)
         units = dict(zip(found.campaign.study.names, found.campaign.study.units))
-        parts.append(f"<h3>First-order reliability (FORM) {mark(sources['model'])}</h3>\n<p>P = {number(f.probability, 3)}, reliability index {number(f.beta)}; from the "
-                     f"gradient at the medians alone {number(f.mean_value_probability, 3)}. A local estimate: exact where the limit is a plane in the normal "
+        parts.append(f"<h3>First-order reliability (FORM) {mark(sources['model'])}</h3>\n<p>P = {number(f.probability, 3)}, reliability index "
+                     f"{number(f.beta)}; from the gradient at the medians alone {number(f.mean_value_probability, 3)}. A local estimate: exact where the limit is a plane in the normal "
                      "space; the count of cases above has no such assumption. The most probable parameters at the limit:</p>\n"
-                     + table(["factor", "at the limit", "unit", "importance"], [[f.names[k], *_in_unit(units[f.names[k]], f.design_point[k]), float(f.importance[k])] for k in order]))
+                     + table(["factor", "at the limit", "unit", "importance"],
+                             [[f.names[k], *_in_unit(units[f.names[k]], f.design_point[k]), float(f.importance[k])] for k in order]))
     if u.tornado is not None:
         parts.append(_tornado(u.tornado, factor, unit, sources["model"]))
     if u.sobol is not None:
@@ -172,7 +176,8 @@ def _optimum(found, one, sources):
     for v in best.problem.variables:
         own = float(base.parameters[v.name].value) if v.name in base.parameters else float("nan")
         rows.append([v.name, *_in_unit(v.unit, own, best.values[v.name], v.low, v.high), "at its bound" if v.name in best.at_bounds else ""])
-    text = f"<p>The best design is case {best.number} of the history.</p>\n" + table(["variable", "vehicle", "optimum", "lowest", "highest", "unit", ""], rows)
+    text = f"<p>The best design is case {best.number} of the history.</p>\n"
+    text += table(["variable", "vehicle", "optimum", "lowest", "highest", "unit", ""], rows)
     outputs = [[name, value] for name, value in best.outputs.items()]
     text += "<p class=soft>Outputs of the optimum, SI:</p>\n" + table(["output", "value"], outputs)
     text += "".join(f"<p>Constraint {escape(str(c))}: {number(best.outputs[c.output])}</p>\n" for c in best.problem.constraints)
@@ -251,7 +256,7 @@ def _column(results, name, unit, count):
 def _sources(found, sources):
     text = "<p>Marks such as S1 in this page point here. Cases are numbered as in the files.</p>\n"
     for source in sources.values():
-        rows = [[key, Raw(escape(value)) if key not in ("SHA-256", "hash of the study") else Raw(f"<code>{escape(value)}</code>")] for key, value in source.facts]
+        rows = [[key, Raw(f"<code>{escape(value)}</code>" if key in ("SHA-256", "hash of the study") else escape(value))] for key, value in source.facts]
         text += f'<h3 id="{source.mark}">{source.mark}: {escape(source.title)}</h3>\n' + table(["", ""], rows, css=("", "hash"))
     return text
 

@@ -42,7 +42,8 @@ def _uncertainty(found, unit, factor):
     if found.tornado is not None:
         t = found.tornado
         scale = [shown(u) for u in t.units]
-        rows = [[t.names[k], f"{scale[k][0] * t.low[k]:.4g}", f"{scale[k][0] * t.high[k]:.4g}", scale[k][1] or "-", f"{factor * t.change_low[k]:+.3g}", f"{factor * t.change_high[k]:+.3g}", f"{100 * t.share[k]:.1f} %"] for k in range(len(t.names))]
+        rows = [[t.names[k], f"{scale[k][0] * t.low[k]:.4g}", f"{scale[k][0] * t.high[k]:.4g}", scale[k][1] or "-",
+                 f"{factor * t.change_low[k]:+.3g}", f"{factor * t.change_high[k]:+.3g}", f"{100 * t.share[k]:.1f} %"] for k in range(len(t.names))]
         blocks.append(f"tornado, from the gradient at the medians ({factor * t.nominal:.4g} {unit}, first-order standard deviation {factor * t.deviation:.3g} "
                       f"{unit})\n" + table(["factor", "low", "high", "unit", f"at low, {unit}", f"at high, {unit}", "variance"], rows, left=(0, 3)))
     if found.sobol is not None:
@@ -54,9 +55,11 @@ def _uncertainty(found, unit, factor):
 
 
 def _shown_probability(found, unit, factor):
-    text = (f"P({factor * found.limit:.4g} {unit} is not reached) = {found.value:.3g}: {found.below} of {found.cases} cases, {100 * found.confidence:g} % interval "
+    text = (f"P({factor * found.limit:.4g} {unit} is not reached) = {found.value:.3g}: {found.below} of {found.cases} cases, "
+            f"{100 * found.confidence:g} % interval "
             f"{found.exact[0]:.3g} to {found.exact[1]:.3g} (Clopper-Pearson), {found.wilson[0]:.3g} to {found.wilson[1]:.3g} (Wilson)")
-    return text + (f"; {found.unknown} cases failed, with any outcome of theirs {found.bounds[0]:.3g} to {found.bounds[1]:.3g}" if found.unknown else "")
+    lost = f"; {found.unknown} cases failed, with any outcome of theirs {found.bounds[0]:.3g} to {found.bounds[1]:.3g}"
+    return text + (lost if found.unknown else "")
 
 
 def _number(value):
@@ -79,8 +82,9 @@ def as_data(found):
 
 
 def _probability_data(found):
-    return None if found is None else {"limit": found.limit, "below": found.below, "cases": found.cases, "unknown": found.unknown, "value": found.value,
-                                       "wilson": list(found.wilson), "exact": list(found.exact), "bounds": list(found.bounds), "confidence": found.confidence}
+    from dataclasses import asdict
+
+    return None if found is None else {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(found).items()}
 
 
 def _uncertainty_data(found):

@@ -171,8 +171,8 @@ class _Run:
         violation = self.problem.violation(best.outputs)
         if violation > _KEPT:
             converged, message = False, f"no case keeps all constraints ({message})"
-        return Optimum(self.problem, best.number, dict(zip(self.problem.names, best.values)), best.outputs, self.problem.objectives[0].value(best.outputs), violation,
-                       start, bounds, converged, len(cases), self.evaluations.computed, sum(c.failed for c in cases), method, message, tuple(cases))
+        return Optimum(self.problem, best.number, dict(zip(self.problem.names, best.values)), best.outputs,
+                       self.problem.objectives[0].value(best.outputs), violation, start, bounds, converged, len(cases), self.evaluations.computed, sum(c.failed for c in cases), method, message, tuple(cases))
 
 
 class _Failed(Exception):

@@ -148,8 +148,8 @@ class Problem:
     ----------
     variables : tuple of Variable
     evaluate : callable
-        Values (k,) in SI to a dict of outputs (float; texts for messages). Raises where there is no result; importable, so that process pools can carry it. With a method
-        ``with_gradient(x)`` that gives (outputs, dict of output to gradient (k,)) the methods that use gradients have them.
+        Values (k,) in SI to a dict of outputs (float; texts for messages). Raises where there is no result; importable, so that process pools can
+        carry it. With a method ``with_gradient(x)`` that gives (outputs, dict of output to gradient (k,)) the methods that use gradients have them.
     objectives : tuple of Objective
     constraints : tuple of Constraint
     description : dict
@@ -216,7 +216,8 @@ class Problem:
 
     def as_data(self):
         """As plain data."""
-        return {"variables": [vars(v) for v in self.variables], "objectives": [{"outputs": list(o.outputs), "sense": o.sense, "unit": o.unit} for o in self.objectives],
+        objectives = [{"outputs": list(o.outputs), "sense": o.sense, "unit": o.unit} for o in self.objectives]
+        return {"variables": [vars(v) for v in self.variables], "objectives": objectives,
                 "constraints": [vars(c) for c in self.constraints], "description": self.description}
 
     def key(self):

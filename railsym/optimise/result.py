@@ -66,7 +66,8 @@ class Optimum:
         for variable in self.problem.variables:
             mark = "  at its bound" if variable.name in self.at_bounds else ""
             scale, text = shown(variable.unit)
-            lines.append(f"  {variable.name:44} {scale * self.values[variable.name]:10.5g} {text:8} in {scale * variable.low:.5g} to {scale * variable.high:.5g}{mark}")
+            lines.append(f"  {variable.name:44} {scale * self.values[variable.name]:10.5g} {text:8} in {scale * variable.low:.5g} to "
+                         f"{scale * variable.high:.5g}{mark}")
         lines += [f"  {c}: {self.outputs[c.output]:.6g}{'' if max(c.violations(self.outputs)) <= 1e-6 else '  BROKEN'}" for c in self.problem.constraints]
         if self.outputs.get("beyond_range"):
             lines.append("  stable over the whole range of speeds: the critical speed is at least its upper end")
