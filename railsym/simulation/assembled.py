@@ -54,6 +54,7 @@ class Assembled:
         self.model = Model(vehicle)
         self.preload = static_preload(self.model)
         self.names = self.model.topology.coordinates
+        self._numbers = {name: k for k, name in enumerate(self.names)}
         self.second = int(np.sum(~self.model.topology.first_order))
         thrusts = {e.name for e in vehicle.elements if e.type == "actuator" and e.parameters["mode"] == "force"}
         self.units = {self.model.topology.internal[name]: "N" if name in thrusts else "m" for name in self.model.topology.internal}
@@ -196,6 +197,6 @@ class Assembled:
 
     def number(self, name, what):
         """Number of a coordinate, or an error with near matches."""
-        if name not in self.names:
+        if name not in self._numbers:
             raise SimulationError(f"{what}: {name!r} is {unknown(name, self.names, 'coordinates')}")
-        return self.names.index(name)
+        return self._numbers[name]

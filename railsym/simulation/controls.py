@@ -23,8 +23,7 @@ class Controls:
         self._run, self._parts = simulation, simulation.parts
         self._state = self._looked = None
         self._bodies = self._parts.model.body_instances()
-        self._laws = {element.name: k for k, element in enumerate(self._parts.model.laws)}
-        self._lines = sum(element.axis is None for element in self._parts.model.laws)
+        self._actuators = _actuators(self._parts.model)
 
     @property
     def simulation(self):
@@ -124,12 +123,9 @@ class Controls:
 
     def _actuator(self, element, what):
         """Table of laws and number in it of an actuator."""
-        actuators = [e.name for e in self._parts.model.laws if e.type == "actuator"]
-        if element not in actuators:
-            raise SimulationError(f"{what} of {element!r}: actuators of this vehicle are {', '.join(actuators) or 'none'}")
-        k = self._laws[element]
-        table, number = ("line", k) if k < self._lines else ("axis", k - self._lines)
-        return self._parts.model._law_tables[table], number
+        if element not in self._actuators:
+            raise SimulationError(f"{what} of {element!r}: actuators of this vehicle are {', '.join(self._actuators) or 'none'}")
+        return self._actuators[element]
 
     def imu(self, body, position=None):
         """What an inertial measurement unit on a body feels.
@@ -166,3 +162,10 @@ class Controls:
     def force(self, coordinate, value):
         """Set the generalised force (N or N m) applied to a coordinate, until it is set again."""
         self._parts.integrator.force[self._parts.number(coordinate, "controller")] = float(value)
+
+
+def _actuators(model):
+    """Name of each actuator -> its table of laws and its number there."""
+    lines = sum(element.axis is None for element in model.laws)
+    places = ((element, "line" if k < lines else "axis", k if k < lines else k - lines) for k, element in enumerate(model.laws))
+    return {element.name: (model._law_tables[table], number) for element, table, number in places if element.type == "actuator"}

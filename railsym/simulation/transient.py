@@ -94,6 +94,7 @@ class Simulation:
             self.ending = ending_of(self.parts, status or sampled)
             raise SimulationError(f"the run cannot begin: {self.ending}")
         self._times, self._values, self._waiting = [np.zeros(1)], [self.recorder.values(np.zeros(1), row[None])], []
+        self._waiting_samples = 0
         self._file = None  # the run's file, where samples are not kept in memory
 
     def command(self, commands, q):
@@ -123,6 +124,7 @@ class Simulation:
         status, sampled = integrator.run(count, self.every, samples)
         times = (done // self.every + 1 + np.arange(sampled)) * self.every * self.dt
         self._waiting.append((times, samples[:sampled]))
+        self._waiting_samples += sampled
         if status:
             self.ending = ending_of(self.parts, status)
             if status == STOPPED and integrator.why is not None and (error := integrator.why()) is not None:
@@ -130,7 +132,7 @@ class Simulation:
 
     def _keep(self):
         """Channels of the samples that wait; returns their times and values."""
-        waiting, self._waiting = self._waiting, []
+        waiting, self._waiting, self._waiting_samples = self._waiting, [], 0
         times, samples = (np.concatenate(part) for part in zip(*waiting, strict=True))
         values = self.recorder.values(times, samples)
         if self._file is None:
@@ -177,7 +179,7 @@ class Simulation:
                             self.parts.integrator.follow()
                     count = min(left, block, *(period - done % period for _, period in calls), *(step - done for step, _, _ in self._planned[:1]))
                     self._advance(count)
-                    if sum(len(times) for times, _ in self._waiting) >= _ENOUGH:
+                    if self._waiting_samples >= _ENOUGH:
                         self._hand_over(writer)
                     bar.update(count)
         except KeyboardInterrupt:
