@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m benchmarks [GROUP ...] [--json FILE]``: a table of figures, and the same as JSON."""
+"""``python -m benchmarks [GROUP ...] [--json FILE]``: machine, versions and a table of figures, and the same as JSON.
+
+``python -m benchmarks --compare BEFORE.json AFTER.json`` sets two such files beside each other.
+"""
 
 import os
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")          # before NumPy: all figures are those of one core
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import argparse
 import json
-import platform
 import sys
 from dataclasses import asdict
 from importlib.util import find_spec
@@ -17,35 +20,52 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != ROOT] + [str(ROOT)]
 
-from benchmarks.figures import GROUPS
+from benchmarks import compare, machine, table
 
 
 def main(arguments=None):
-    """Measure and print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("group", nargs="*", help=f"of {', '.join(GROUPS)} (default: all)")
-    parser.add_argument("--json", metavar="FILE", help="write the figures as JSON")
+    """Measure and print, or compare; 1 where a group could not be measured."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("group", nargs="*", help="groups of figures (default: all); an unknown one lists them")
+    parser.add_argument("--json", metavar="FILE", help="write machine and figures as JSON, after each group")
+    parser.add_argument("--compare", nargs=2, metavar=("BEFORE", "AFTER"), help="two such files; nothing is measured")
+    parser.add_argument("--threshold", type=float, default=0.1, help="relative change that a comparison points out (default 0.1)")
     options = parser.parse_args(arguments)
+    if options.compare:
+        try:
+            before, after = map(compare.load, options.compare)
+        except compare.FileError as error:
+            parser.error(str(error))
+        print("\n".join(compare.compared(before, after, options.threshold)))
+        return 0
+    if find_spec("railsym._railsym") is None:
+        parser.error("railsym is not installed in this Python: pip install . first")
+    from benchmarks.figures import GROUPS
+
     unknown = [name for name in options.group if name not in GROUPS]
     if unknown:
         parser.error(f"no group {unknown[0]!r}; there are {', '.join(GROUPS)}")
-    if find_spec("railsym._railsym") is None:
-        parser.error("railsym is not installed in this Python: pip install . first")
-    figures = []
-    for name in options.group or GROUPS:
-        for figure in GROUPS[name]():
-            figures.append(figure)
-            print(row(figure), flush=True)
-    if options.json:
-        content = {"python": platform.python_version(), "processor": platform.machine(), "figures": [asdict(f) for f in figures]}
-        Path(options.json).write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
-    return 0
+    return measured({name: GROUPS[name] for name in options.group or GROUPS}, options.json)
 
 
-def row(figure):
-    """One line of the table."""
-    limit = "" if figure.limit is None else f"{'at least' if figure.at_least else 'under'} {figure.limit:g}"
-    return f"{figure.name:<50} {figure.value:>10.4g} {figure.unit:<3} {limit:<14} {figure.note}".rstrip()
+def measured(groups, path=None):
+    """Print the figures of groups as they come; a group that fails is named at the end, and the others stay."""
+    found, failed, where = [], {}, machine.described()
+    print("\n".join([*machine.lines(where), "", table.head()]), flush=True)
+    for name, function in groups.items():
+        try:
+            figures = function()
+        except Exception as error:  # whatever one group meets, the figures of the others are not lost
+            failed[name] = f"{type(error).__name__}: {error}"
+            continue
+        found += figures
+        for figure in figures:
+            print(table.row(figure), flush=True)
+        if path:
+            content = {"machine": where, "figures": [asdict(figure) for figure in found], "failed": failed}
+            Path(path).write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+    print("\n".join(["", *table.summary(found, failed)]))
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

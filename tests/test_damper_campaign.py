@@ -28,12 +28,13 @@ def test_constants(seed, noise, method):
 
 QUICK = [("viscous curve", 1, 0.0), ("curve", 1, 0.02), ("nonlinear", 2, 0.0), ("nonlinear", 2, 0.02)]
 LONG = [(kind, seed, noise) for kind, seed in (("viscous curve", 1), ("curve", 3), ("nonlinear", 5), ("nonlinear", 13), ("nonlinear", 15), ("nonlinear", 33),
-                                               ("asymmetric", 0)) for noise in (0.0, 0.02)]
+                                               ("asymmetric", 0), ("asymmetric", 33)) for noise in (0.0, 0.02)]
 
 
 @pytest.mark.parametrize(("kind", "seed", "noise"), [*QUICK, *(pytest.param(*one, marks=pytest.mark.slow) for one in LONG)])
 def test_curves(kind, seed, noise):
-    """Seeds 13, 15 and 33 have the corner of a blow-off valve, which a prior of small changes of slope rounds off."""
+    """Seeds 13, 15 and 33 have the corner of a blow-off valve, which a prior of small changes of slope rounds off; of the asymmetric
+    seed 33 least squares alone make three bends, 5 % of the peak too high."""
     made, fit = checked(seed, kind, noise)
     assert force_error(fit, made) < 0.03
     if made.damper.k is not None:

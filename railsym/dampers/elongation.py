@@ -29,6 +29,7 @@ _LAG_LEVELS = 18     # with 12 the lag is three times as far off
 _ROUGH_LEVELS = 10   # for that first look
 _PASSES = 8          # of an asymmetric damper, whose mean forces settle on the way
 _STRIDE = 0.1        # of the peak force: the largest change of a mean force in a pass
+_SETTLED = 0.01      # of the peak force: a change of a mean force in the last pass that no longer counts
 _TURNS = 6           # of lag and mean forces
 _GRID = 11           # lags of the first look
 
@@ -194,7 +195,8 @@ def refined_elongation(loops, speed_nodes=None, symmetric=True):
         best = found if symmetric or k == 0 or found.misfit < best.misfit else best
         if not symmetric:
             loops = replace(loops, mean=loops.mean + found.shift)
-    return best
+    settled = symmetric or (np.abs(found.shift) < _SETTLED * np.abs(loops.force).max(axis=1)).all()
+    return found if settled else best
 
 
 def _mean_force(loops, found):

@@ -8,7 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
-from railsym.dampers import elongation, energy, solve
+from railsym.dampers import corners, elongation, energy, solve
 from railsym.dampers.models import DamperModel
 from railsym.dampers.parametrisation import Parametrisation, stiffness_nodes
 from railsym.dampers.uncertainty import Identifiability, covariance, estimated_weights, identifiability, intervals
@@ -234,7 +234,16 @@ def _sharpened(loops, made, x, fixed, bounds, progress, passes=(25, 40)):
             break
         # what a wrong model leaves is no reason for a curve with steps
         left = min(misfit, 0.2) if misfit > np.hypot(_WRONG, 3.0 * solve.noise_floor(loops)) else 0.0
-    return made, x
+    return (made, x) if left else _with_better_corners(loops, made, x, fixed, bounds, progress, passes[-1])
+
+
+def _with_better_corners(loops, made, x, fixed, bounds, progress, most):
+    """The fit, or one begun from corners in place of groups of bends where tests and prior like that better."""
+    shaped = corners.with_corners(made, x)
+    if shaped is None:
+        return made, x
+    tried = solve.refine(loops, *shaped, fixed, bounds, progress, most)
+    return tried if solve.cost(loops, *tried, fixed) < solve.cost(loops, made, x, fixed) else (made, x)
 
 
 def _start(loops, model, curve, odd, tau, lags):

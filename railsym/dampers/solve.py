@@ -223,6 +223,12 @@ def _weight(loops, left=0.0):
     return max(noise_floor(loops), _LEAST_NOISE, left) / np.sqrt(2.0 * loops.kept.sum())
 
 
+def cost(loops, made, x, fixed):
+    """What least squares makes small: squares of the misfit, weighted, and of the wish for smooth curves."""
+    entries = np.concatenate([misfit(loops, made, x, fixed) * entry_weights(loops), _roughness(made, x, _weight(loops))])
+    return float(entries @ entries)
+
+
 def evidence(loops, made, x, fixed, weight=None, state=None, tail=_TAIL):
     """Slopes of the misfit and, below them, of the wish for smooth curves."""
     weight = _weight(loops) if weight is None else weight
