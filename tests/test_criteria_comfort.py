@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import railsym as rs
+from railsym import criteria
 from railsym.criteria import CriterionError, weighting
 from railsym.criteria.sperling import sperling_weight
 from railsym.criteria.weighting import weighted
@@ -159,3 +160,22 @@ def test_the_two_forms_of_the_curve_formula_agree():
     for posture, a, b in (("standing", 2.80, 2.03), ("seated", 0.88, 0.95)):
         table = data("comfort")["curve_transition"][posture]
         assert table["A"][0] == pytest.approx(a / 0.0981, abs=6e-3) and table["B"][0] == pytest.approx(b / 0.0981, abs=6e-3)
+
+
+def test_discrete_events_of_a_sine_on_a_steady_acceleration():
+    """y_p is twice the amplitude, y_m the steady part; nothing below the threshold; both postures; mirrored alike."""
+    time = np.arange(0.0, 10.0, 0.01)
+    lateral = 0.6 + 1.2 * np.sin(2 * np.pi * time)
+    found = criteria.discrete_event_comfort(time, lateral)
+    # 201 samples on 2 periods of 100: the mean is off by a sample's share
+    assert found.peak_to_peak == pytest.approx(2.4, rel=1e-9) and found.mean == pytest.approx(0.6, abs=0.007)
+    assert found.percent == pytest.approx(16.62 * 2.4 + 27.01 * found.mean - 37.0) and found.values.max() == found.percent
+    seated = criteria.discrete_event_comfort(time, -lateral, "seated")
+    assert seated.percent == pytest.approx(8.46 * 2.4 + 13.05 * seated.mean - 21.7)
+    assert criteria.discrete_event_comfort(time, 0.2 * lateral).percent == 0.0
+    jolt = np.where(np.abs(time - 6.0) < 0.3, 3.0, 0.0)
+    assert abs(criteria.discrete_event_comfort(time, jolt).time - 6.0) < 1.4 and "recalled and unverified" in str(found)
+    with pytest.raises(criteria.CriterionError, match="standing, seated"):
+        criteria.discrete_event_comfort(time, lateral, "lying")
+    with pytest.raises(criteria.CriterionError, match="at least 2 s"):
+        criteria.discrete_event_comfort(time[:100], lateral[:100])

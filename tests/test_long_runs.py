@@ -190,3 +190,13 @@ def test_percentiles_by_section_of_a_run_in_a_file(tmp_path):
     judged = rs.criteria.derailment(found, sections=[(part.start, part.end) for part in parts])
     values = judged.statistics["Q wheelset1.left"].values
     assert values.shape == (3, 1) and judged["Q wheelset1.left"].value == values.max()
+
+
+def test_static_wheel_loads_come_with_a_run():
+    """Q0 of the criteria is the vehicle's, not the median in a curve: half of the weight on each wheelset's sides."""
+    found = run()
+    loads = found.info.extra["wheel_loads"]
+    weight = BOGIE.gravity * sum(b.mass + sum(box.mass for box in b.axleboxes) for b in BOGIE.bodies)
+    assert list(loads) == ["wheelset1.left", "wheelset1.right", "wheelset2.left", "wheelset2.right"] and sum(loads.values()) == pytest.approx(weight, rel=1e-6)
+    judged = rs.criteria.derailment(found)
+    assert judged.wheel_load == loads and not any("medians" in note for note in judged.notes)

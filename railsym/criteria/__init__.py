@@ -22,6 +22,7 @@ _MODULE_OF = {
     "comfort": "comfort",
     "curve_transition_comfort": "curve_comfort",
     "derailment": "derailment",
+    "discrete_event_comfort": "discrete_comfort",
     "frame_markers": "markers",
     "hunting_frequency": "hunting",
     "instability": "instability",

@@ -195,6 +195,13 @@ class Assembled:
             (u if rate else q)[k] = float(value)
         return q, u
 
+    def static_loads(self):
+        """``{"wheel_loads": {"wheelset1.left": N, ...}}``, what criteria take for Q0; empty without wheel-rail forces."""
+        if self.wheels is None:
+            return {}
+        names = [f"{body.name}.{'left' if side < 0 else 'right'}" for body, side in self.model.wheels]
+        return {"wheel_loads": dict(zip(names, (float(load) for load in self.preload.wheel_loads), strict=True))}
+
     def number(self, name, what):
         """Number of a coordinate, or an error with near matches."""
         if name not in self._numbers:

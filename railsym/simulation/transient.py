@@ -238,7 +238,7 @@ class Simulation:
         law = getattr(parts.wheels, "_law", "linear")
         return RunInfo(vehicle=parts.vehicle.name, configuration=parts.vehicle.configuration or "", track=getattr(parts.track, "name", "straight"),
                        speed=float(parts.speed.at(0.0)), time_step=self.dt, creep_law=law, ending=self.ending,
-                       message=str(self.ending), extra={"counts": counts} | ({"faults": self.faults} if self.faults else {}))
+                       message=str(self.ending), extra={"counts": counts, **parts.static_loads()} | ({"faults": self.faults} if self.faults else {}))
 
     def result(self):
         """The `Run` so far; of a run that is kept in its file, a `railsym.results.FileRun` once the writer is finished."""
