@@ -25,7 +25,7 @@ static const double FRACTION = 1e-3, LEAST_TOLERANCE = 1e-6;
 
 /* A step of one iteration sees no contraction: factors serve less well from step to step, and rounding may look like quick
  * convergence. So what was seen last is taken to grow, until a second iteration looks again. */
-static const double AGEING = 1.1, LEAST = 1e-4;
+static const double AGEING = 1.05, LEAST = 1e-4;
 enum { ITERATIONS = 5, SETS = 8 };
 
 /* Factors of an iteration: those there are, with new slopes of the wheels, all new. */

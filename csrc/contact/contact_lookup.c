@@ -43,7 +43,8 @@ INLINE int locate(const rs_axis *axis, double x, knot *k)
 enum { VALUE, BY_SHIFT, BY_ROLL, TWICE_BY_SHIFT, BY_BOTH, CLOSURES }; /* of c, s, r, Y' */
 enum { BY_TAU = 3, FIELD_SLOPES };                                     /* of the fields, after the first three */
 
-INLINE void read_closure(const rs_contact_table *t, int zone, const knot *shift, const knot *roll, half_row *out)
+/* Value and slope over the shift, and (all) the others. */
+INLINE void read_closure(const rs_contact_table *t, int zone, const knot *shift, const knot *roll, int all, half_row *out)
 {
 	const half_row *first = (const half_row *)t->zone[zone].closure + (size_t)shift->node * (size_t)t->roll.count + (size_t)roll->node;
 	double square = t->zone[zone].shift.inverse * t->zone[zone].shift.inverse, twice[3] = {square, -2.0 * square, square};
@@ -53,16 +54,21 @@ INLINE void read_closure(const rs_contact_table *t, int zone, const knot *shift,
 		half_row here = {0}, slope = {0};
 		for (int j = 0; j < 3; j++) {
 			ADD_SCALED(here, roll->w[j], node[j]);
-			ADD_SCALED(slope, roll->d[j], node[j]);
+			if (all)
+				ADD_SCALED(slope, roll->d[j], node[j]);
 		}
 		ADD_SCALED(value, shift->w[i], here);
 		ADD_SCALED(by_shift, shift->d[i], here);
+		if (!all)
+			continue;
 		ADD_SCALED(by_roll, shift->w[i], slope);
 		ADD_SCALED(second, twice[i], here);
 		ADD_SCALED(both, shift->d[i], slope);
 	}
 	out[VALUE] = value;
 	out[BY_SHIFT] = by_shift;
+	if (!all)
+		return;
 	out[BY_ROLL] = by_roll;
 	out[TWICE_BY_SHIFT] = second;
 	out[BY_BOTH] = both;
@@ -128,10 +134,12 @@ typedef struct {
 } slopes;
 
 /* Normal penetration p of a zone: s P, P = drop - c + yaw^2/2 t (r t - Y'), t = -dc/d(eta). */
-INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw)
+INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw, int with_slopes)
 {
 	double t = -c[BY_SHIFT][0], r = c[VALUE][2], half = 0.5 * yaw * yaw, arm = r * t - c[VALUE][3], s = c[VALUE][1];
 	double P = drop - c[VALUE][0] + half * t * arm, by[2];
+	if (!with_slopes)
+		return (slopes){s * P, {0.0}};
 	for (int k = 0; k < 2; k++) { /* shift, roll */
 		const double *d = c[BY_SHIFT + k], dt = -c[TWICE_BY_SHIFT + k][0];
 		by[k] = s * (-d[0] + half * (dt * (arm + r * t) + t * (t * d[2] - d[3]))) + P * d[1];
@@ -252,7 +260,7 @@ typedef struct {
 	slopes p[RS_ZONES];
 } found_place;
 
-INLINE int find_place(const rs_contact_table *t, const double *place, found_place *f, int *beyond)
+INLINE int find_place(const rs_contact_table *t, const double *place, int with_slopes, found_place *f, int *beyond)
 {
 	double eta = place[0] - t->wheel_radius * place[1], at = (eta - t->shift.start) * t->shift.inverse;
 	if (!locate(&t->roll, place[1], &f->roll))
@@ -264,8 +272,8 @@ INLINE int find_place(const rs_contact_table *t, const double *place, found_plac
 		f->p[z].v = 0.0;
 		if (!locate(&t->zone[z].shift, eta, &f->shift[z]))
 			continue; /* the zone cannot touch here */
-		read_closure(t, z, &f->shift[z], &f->roll, closure);
-		f->p[z] = penetration((const double (*)[RS_CLOSURE])closure, place[2], place[3]);
+		read_closure(t, z, &f->shift[z], &f->roll, with_slopes, closure);
+		f->p[z] = penetration((const double (*)[RS_CLOSURE])closure, place[2], place[3], with_slopes);
 		if (!(f->p[z].v <= t->deepest))
 			return refuse(place, 2, beyond);
 	}
@@ -294,7 +302,7 @@ INLINE int look_up(const rs_contact_table *t, const double *place, int with_slop
 {
 	found_place f;
 	*count = 0;
-	int status = find_place(t, place, &f, beyond);
+	int status = find_place(t, place, with_slopes, &f, beyond);
 	return status == RS_OK ? read_zones(t, place, &f, with_slopes, patch, count, beyond) : status;
 }
 
@@ -314,7 +322,7 @@ RS_CLONES static int look_up_batch(const rs_contact_table *t, int n, const doubl
 	found_place f[BATCH];
 	int status[BATCH], worst = RS_OK;
 	for (int k = 0; k < n; k++)
-		status[k] = find_place(t, place + RS_PLACE_SIZE * k, f + k, beyond + k);
+		status[k] = find_place(t, place + RS_PLACE_SIZE * k, 1, f + k, beyond + k);
 	for (int k = 0; k < n; k++) {
 		if (status[k] == RS_OK)
 			status[k] = read_zones(t, place + RS_PLACE_SIZE * k, f + k, 1, patch + RS_ZONES * k, count + k, beyond + k);

@@ -12,8 +12,9 @@
  *
  *   P = -tau (A, B + u3 w),  w = 1 + t    A = (dpx/dX)/L, B = (dpy/dX - 2 u3 X)/L
  *
- * A contact begins where it slips on any of the strips that go side by side, a batch with the first of them: |P| <= g = tau w is
- * (1 - u3^2) w^2 - 2 B u3 w - (A^2 + B^2) >= 0, from the leading edge to where w is the positive root; never with |u3| >= 1.
+ * A contact begins where it might slip on any of the strips that go side by side, a batch with the first of them: |P| <= g = tau w is
+ * (1 - u3^2) w^2 - 2 B u3 w - (A^2 + B^2) >= 0, from the leading edge to where w is the positive root; never with |u3| >= 1. |A|, |B|
+ * and the root grow towards the edges.
  */
 #define JOINED(name, wide) name##_##wide
 #define JOIN(name, wide) JOINED(name, wide)
@@ -78,7 +79,8 @@ typedef struct {
 
 /* dpx/dX = x - across u3 Y, dpy/dX = y + spin X. Their slopes: straight for u1 and u2, -across Y and 2 X for u3. */
 typedef struct {
-	part x, y, spin, across, u3, root, per_root, rest, per_rest; /* rest: 1 - u3^2 */
+	part x, y, spin, across, u3, root, per_root;
+	part most_x, most_turn, along, rest, per_rest;  /* |x|, |across u3|, y u3 or 0, 1 - u3^2 */
 	double straight;
 } rates;
 
@@ -97,16 +99,16 @@ typedef struct {
 	part grown, sum, sums, spun, spun_sum, spun_sums;
 } stuck;
 
-/* g/sqrt(square), 1 where square <= g^2, to rounding: processors find 1/sqrt to 14 or 12 bits, a series does the rest. */
+/* g/sqrt(square), 1 where square <= g^2, to 6e-13: processors find 1/sqrt to 14 or 12 bits, a series does the rest. */
 RS_INLINE part PART(shortening)(part square, double g)
 {
 	part m = AT_LEAST(square, g * g);
 #if WIDE == 8
 	part r = _mm512_rsqrt14_pd(m), e = 1.0 - m * r * r, s = g * r;
-	return s + s * e * (0.5 + e * (0.375 + e * 0.3125));
+	return s + s * e * (0.5 + e * 0.375);
 #elif WIDE == 4
 	part r = _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(m))), e = 1.0 - m * r * r, s = g * r;
-	return s + s * e * (0.5 + e * (0.375 + e * (0.3125 + e * 0.2734375)));
+	return s + s * e * (0.5 + e * (0.375 + e * 0.3125));
 #elif WIDE == 2
 	part s;
 	for (int l = 0; l < 2; l++)
@@ -161,18 +163,12 @@ RS_INLINE void PART(cell)(traction *p, int columns, const step *add, part spin, 
 	}
 }
 
-/* Cells that stick on each of the strips first ... last; where a number is none, no cell does. */
-RS_INLINE part PART(sticking)(const rates *rate, int cells, const lines *at, int first, int last)
+/* Cells that stick on strips from +-Y to the middle; where a number is none, no cell does. */
+RS_INLINE part PART(sticking)(const rates *rate, int cells, double Y, double per_L)
 {
 	const double round = 6755399441055744.0; /* 1.5 2^52 */
-	part square = {0}, along = {0}, w;
-	UNROLL
-	for (int j = first; j <= last; j++) {
-		part A = (rate->x - at->Y[j] * (rate->across * rate->u3)) * at->per_L[j], B = rate->y * at->per_L[j];
-		square = LARGER(rate->rest * A * A + B * B, square);
-		along = LARGER(B * rate->u3, along);
-	}
-	w = along + SQUARE_ROOT(square);
+	part A = rate->most_x + Y * rate->most_turn, square = rate->rest * A * A + rate->y * rate->y, w;
+	w = per_L * (rate->along + SQUARE_ROOT(square));
 	/* (i + 1/2) dt < 2 - w, rounded down or to one less; none where w is beyond 2 */
 	part stick = (0.5 * cells) * (2.0 - w * rate->per_rest);
 	stick = WHERE(ABOVE(rate->rest, 0.0), WHERE(ABOVE(stick, 1.0), stick, (part){0}), (part){0});
@@ -245,7 +241,7 @@ RS_INLINE void PART(advance)(double dt, int columns, int count, int from, int to
 RS_INLINE int PART(stick)(const grid *of, int columns, int first, int last, const lines *at, const rates *rate, part *n, step add[][4],
                           traction p[][4])
 {
-	*n = PART(sticking)(rate, of->cells, at, first, last);
+	*n = PART(sticking)(rate, of->cells, fabs(at->Y[first]), at->per_L[first]);
 	stuck after = PART(sums_of)(*n, of->dt);
 	UNROLL
 	for (int j = first; j <= last; j++)
@@ -325,8 +321,10 @@ static void PART(fastsim)(const rs_creep_input *in, int slopes, rs_creep_value *
 	memset(sum, 0, sizeof sum);
 	for (int q = 0; q < RS_LANES / WIDE; q++) {
 		part root = ((const part *)&in->root)[q], u3 = ((const part *)&in->u[2])[q], rest = 1.0 - u3 * u3;
-		rates rate = {straight * ((const part *)&in->u[0])[q], straight * ((const part *)&in->u[1])[q], 2.0 * u3,
-		              2.0 / (root * root), u3, root, 1.0 / root, rest, 1.0 / rest, straight};
+		part x = straight * ((const part *)&in->u[0])[q], y = straight * ((const part *)&in->u[1])[q], zero = {0};
+		part across = 2.0 / (root * root), turn = across * u3;
+		rates rate = {x, y, 2.0 * u3, across, u3, root, 1.0 / root,
+		              LARGER(x, -x), LARGER(turn, -turn), LARGER(y * u3, zero), rest, 1.0 / rest, straight};
 		PART(all_strips)(&of, q, slopes, &rate, sum, out);
 	}
 	for (int i = 0; i < 3; i++) {

@@ -123,6 +123,7 @@ void rs_kalker_at(const rs_creep_settings *creep, double log_ratio, double *c, d
 	for (int j = 0; j < 4; j++) {
 		const double *p = creep->c + 16 * k + 4 * j;
 		c[j] = p[0] + t * (p[1] + t * (p[2] + t * p[3]));
-		slope[j] = p[1] + t * (2.0 * p[2] + 3.0 * t * p[3]);
+		if (slope)
+			slope[j] = p[1] + t * (2.0 * p[2] + 3.0 * t * p[3]);
 	}
 }

@@ -117,7 +117,7 @@ void rs_patch_forces(const rs_wheel_rail *wr, double V, int tangents, const rs_b
 /* Creep forces of eight patches. */
 void rs_adhesion_forces(const rs_wheel_rail *wr, int slopes, const rs_adhesion_input *in, rs_adhesion *out);
 
-/* Kalker's coefficients (4) and their slopes over ln(a/b); 0 outside their range. */
+/* Kalker's coefficients (4) and, unless NULL, their slopes over ln(a/b); 0 outside their range. */
 int rs_kalker_covers(const rs_creep_settings *creep, double log_ratio);
 void rs_kalker_at(const rs_creep_settings *creep, double log_ratio, double *c, double *slope);
 

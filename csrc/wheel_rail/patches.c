@@ -103,14 +103,14 @@ static void gather(const rs_wheel_rail *wr, const rs_batch *batch, int tangents,
 	RS_EACH(l) {
 		int from = l < batch->count ? l : 0, number = batch->wheel[from];
 		const rs_wheel *given = &wr->wheelset[number / 2].wheel[number % 2];
-		double c[4], slope[4];
+		double c[4], slope[4] = {0.0};
 		numbers[l] = number;
 		wheel[l] = &wr->axle[number / 2].wheel[number % 2];
 		patch[l] = wheel[l]->patch[batch->patch[from]].load;
 		RS_AT(to->damping, l) = given->damping;
 		RS_AT(to->adhesion.friction, l) = given->friction;
 		RS_AT(to->adhesion.weight, l) = given->weight;
-		rs_kalker_at(&wr->creep, wheel[l]->log_ratio[batch->patch[from]], c, slope);
+		rs_kalker_at(&wr->creep, wheel[l]->log_ratio[batch->patch[from]], c, tangents ? slope : NULL);
 		for (int j = 0; j < 4; j++) {
 			RS_AT(to->adhesion.c[j], l) = c[j];
 			RS_AT(to->adhesion.c_to[j], l) = slope[j];
