@@ -189,68 +189,33 @@ int rs_block_lu_factor(rs_block_lu *lu, int *worst)
 	return RS_OK;
 }
 
-/* A vector in two halves, y = even + odd columns: half the latency of one sum. */
+/* Solves with columns whole, and with their halves: GCC lowers vectors of 64 bytes badly where the processor has none. */
+#if RS_LEVELS
+typedef double half8 __attribute__((vector_size(4 * RS_BLOCK), may_alias));
 typedef struct {
-	column8 even, odd;
-} halves;
+	half8 half[2];
+} column4;
 
-/* y = y - A x */
-static RS_ALWAYS_INLINE void subtract_columns(halves *y, const double *A, const double *x, int size)
-{
-	for (int c = 0; c + 1 < size; c += 2) {
-		subtract(&y->even, x[c], (const column8 *)A + c);
-		subtract(&y->odd, x[c + 1], (const column8 *)A + c + 1);
-	}
-	if (size % 2)
-		subtract(&y->even, x[size - 1], (const column8 *)A + size - 1);
-}
+#define COLUMN column4
+#define SUBTRACT(to, x, column) ((to)->half[0] -= (x) * (column)->half[0], (to)->half[1] -= (x) * (column)->half[1])
+#define PART(name) name##_by_halves
+#define LEVELS RS_CLONES
+#include "block_solve.h"
+#endif
 
-static RS_ALWAYS_INLINE void subtract_vector(halves *y, const double *A, const double *x, int size)
-{
-	if (size == 6)
-		subtract_columns(y, A, x, 6);
-	else if (size == 8)
-		subtract_columns(y, A, x, 8);
-	else
-		subtract_columns(y, A, x, size);
-}
+#define COLUMN column8
+#define SUBTRACT subtract
+#define PART(name) name##_whole
+#define LEVELS RS_WIDEST
+#include "block_solve.h"
 
-static RS_ALWAYS_INLINE halves begin(const double *x)
-{
-	halves y;
-	memset(&y.odd, 0, sizeof y.odd);
-	memcpy(&y.even, x, sizeof y.even);
-	return y;
-}
-
-static RS_ALWAYS_INLINE void finish(halves *y, double *x)
-{
-	column8 sum = y->even;
-	subtract(&sum, -1.0, &y->odd);
-	memcpy(x, &sum, sizeof sum);
-}
-
-RS_CLONES
 void rs_block_lu_solve(const rs_block_lu *lu, double *x)
 {
-	const double *values = lu->values;
-	for (int k = 0; k < lu->blocks; k++)
-		for (int i = lu->first[k]; i < lu->first[k + 1]; i++) {
-			double *to = x + RS_BLOCK * lu->later[i];
-			halves y = begin(to);
-			subtract_vector(&y, values + lu->lower[i], x + RS_BLOCK * k, lu->size[k]);
-			finish(&y, to);
-		}
-	for (int k = lu->blocks - 1; k >= 0; k--) {
-		static const double zero[RS_BLOCK] = {0.0};
-		double *own = x + RS_BLOCK * k;
-		halves y = begin(own), product = begin(zero);
-		for (int j = lu->first[k]; j < lu->first[k + 1]; j++)
-			subtract_vector(&y, values + lu->upper[j], x + RS_BLOCK * lu->later[j], lu->size[lu->later[j]]);
-		finish(&y, own);
-		subtract_vector(&product, values + lu->diagonal[k], own, lu->size[k]);
-		finish(&product, own);
-		for (int r = 0; r < RS_BLOCK; r++)
-			own[r] = -own[r];
+#if RS_LEVELS
+	if (!RS_TAKES_WIDEST) {
+		solve_by_halves(lu, x);
+		return;
 	}
+#endif
+	solve_whole(lu, x);
 }

@@ -90,7 +90,7 @@ static RS_ALWAYS_INLINE void transpose(const double *state, const int *source, f
 }
 
 /* A shorter run reads what follows it; the first input is stored last, over what went to its slot. */
-static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, int half, double *in)
+static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, int half, int wide, double *in)
 {
 	double *to[RS_RUN];
 	four left[RS_RUN], right[RS_RUN];
@@ -104,35 +104,63 @@ static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, in
 	}
 	transpose(state, run->source + 4, right);
 	for (int k = RS_RUN - 1; k >= 0; k--)
-		*(rs_lane *)to[k] = __builtin_shufflevector(left[k], right[k], 0, 1, 2, 3, 4, 5, 6, 7); /* one store: kernels load all of it */
+		if (wide) /* one store, for what kernels load in one go */
+			*(rs_lane *)to[k] = __builtin_shufflevector(left[k], right[k], 0, 1, 2, 3, 4, 5, 6, 7);
+		else {
+			*(four *)to[k] = left[k];
+			*(four *)(to[k] + 4) = right[k];
+		}
 }
 #else
-static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, int half, double *in)
+static RS_ALWAYS_INLINE void copy_run(const double *state, const rs_run *run, int half, int wide, double *in)
 {
 	(void)half;
+	(void)wide;
 	for (int k = 0; k < run->length; k++)
 		for (int lane = 0; lane < RS_LANES; lane++)
 			in[run->slot[k] * RS_LANES + lane] = state[run->source[lane] + k];
 }
 #endif
 
-static RS_ALWAYS_INLINE void copy_runs(const double *restrict state, const rs_run *restrict run, const rs_run *end, int half, double *restrict in)
+static RS_ALWAYS_INLINE void copy_runs(const double *restrict state, const rs_run *restrict run, const rs_run *end, int half, int wide, double *restrict in)
 {
 	for (; run < end; run++)
 		if (run->length == 1)
 			copy_one(state, run, in);
 		else
-			copy_run(state, run, half, in);
+			copy_run(state, run, half, wide, in);
 }
 
 /* Of a block with at most half its lanes filled the rest stays as it is. */
-RS_CLONES
-void rs_group_gather(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
+static RS_ALWAYS_INLINE void gather_block(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block, int wide)
 {
 	double *restrict in = group->in + (size_t)block * (size_t)(info->inputs * RS_LANES);
 	const rs_run *run = group->run + group->first_run[block], *end = group->run + group->first_run[block + 1];
 	if (2 * (group->count - block * RS_LANES) <= RS_LANES)
-		copy_runs(model->state, run, end, 1, in);
+		copy_runs(model->state, run, end, 1, wide, in);
 	else
-		copy_runs(model->state, run, end, 0, in);
+		copy_runs(model->state, run, end, 0, wide, in);
+}
+
+#if RS_LEVELS
+RS_CLONES static void gather_halves(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
+{
+	gather_block(model, group, info, block, 0);
+}
+#endif
+
+RS_WIDEST static void gather_whole(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
+{
+	gather_block(model, group, info, block, 1);
+}
+
+void rs_group_gather(const rs_model *model, const rs_group *group, const rs_kernel_info *info, int block)
+{
+#if RS_LEVELS
+	if (!RS_TAKES_WIDEST) {
+		gather_halves(model, group, info, block);
+		return;
+	}
+#endif
+	gather_whole(model, group, info, block);
 }

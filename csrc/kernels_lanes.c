@@ -54,20 +54,10 @@ static rs_kernel_function *const whole[][2] = {RS_KERNELS(WHOLE)};
 #define HALF(name, inputs, coordinates, entries, has_law) {rs_##name##_rows_half, rs_##name##_half},
 static rs_kernel_function *const half[][2] = {RS_KERNELS(HALF)};
 
-/* 1 where the processor takes all lanes at once. */
-static int takes_whole(void)
-{
-#if RS_LEVELS
-	return __builtin_cpu_supports("x86-64-v4");
-#else
-	return 1;
-#endif
-}
-
 void rs_kernel_call(int kernel, int used, const double *in, const rs_law *const *laws, const double *seed, double *r, double *S)
 {
 	enum { HALF_LANES = RS_LANES / 2 };
-	if (used > HALF_LANES && takes_whole()) {
+	if (used > HALF_LANES && RS_TAKES_WIDEST) {
 		whole[kernel][S != NULL](in, laws, seed, r, S);
 		return;
 	}

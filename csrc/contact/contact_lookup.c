@@ -84,25 +84,25 @@ INLINE void read_field(const rs_contact_table *t, int zone, const knot *shift, c
 {
 	size_t along = (size_t)t->levels, across = along * (size_t)t->roll.count;
 	const row *first = first_node(t, zone, shift, roll, level);
-	row at[3] = {{0}}, by_shift = {0}, by_roll = {0}, value = {0}, by_tau = {0};
+	row at[3] = {{{{0}}}}, by_shift = {{{0}}}, by_roll = {{{0}}}, value = {{{0}}}, by_tau = {{{0}}};
 	for (int i = 0; i < 3; i++) {
-		row sum = {0};
+		row sum = {{{0}}};
 		for (int j = 0; j < 3; j++) {
 			const row *node = first + (size_t)i * across + (size_t)j * along;
 			double weight = shift->w[i] * roll->w[j];
-			row here = {0};
+			row here = {{{0}}};
 			for (int k = 0; k < 3; k++) {
-				ADD_SCALED(here, level->w[k], node[k]);
-				ADD_SCALED(at[k], weight, node[k]);
+				ADD_SCALED_ROW(here, level->w[k], node[k]);
+				ADD_SCALED_ROW(at[k], weight, node[k]);
 			}
-			ADD_SCALED(sum, roll->w[j], here);
-			ADD_SCALED(by_roll, shift->w[i] * roll->d[j], here);
+			ADD_SCALED_ROW(sum, roll->w[j], here);
+			ADD_SCALED_ROW(by_roll, shift->w[i] * roll->d[j], here);
 		}
-		ADD_SCALED(by_shift, shift->d[i], sum);
+		ADD_SCALED_ROW(by_shift, shift->d[i], sum);
 	}
 	for (int k = 0; k < 3; k++) {
-		ADD_SCALED(value, level->w[k], at[k]);
-		ADD_SCALED(by_tau, level->d[k], at[k]);
+		ADD_SCALED_ROW(value, level->w[k], at[k]);
+		ADD_SCALED_ROW(by_tau, level->d[k], at[k]);
 	}
 	out[VALUE] = value;
 	out[BY_SHIFT] = by_shift;
@@ -115,16 +115,16 @@ INLINE void read_field_value(const rs_contact_table *t, int zone, const knot *sh
 {
 	size_t along = (size_t)t->levels, across = along * (size_t)t->roll.count;
 	const row *first = first_node(t, zone, shift, roll, level);
-	row at[3] = {{0}}, sum = {0};
+	row at[3] = {{{{0}}}}, sum = {{{0}}};
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < 3; j++) {
 			const row *node = first + (size_t)i * across + (size_t)j * along;
 			double weight = shift->w[i] * roll->w[j];
 			for (int k = 0; k < 3; k++)
-				ADD_SCALED(at[k], weight, node[k]);
+				ADD_SCALED_ROW(at[k], weight, node[k]);
 		}
 	for (int k = 0; k < 3; k++)
-		ADD_SCALED(sum, level->w[k], at[k]);
+		ADD_SCALED_ROW(sum, level->w[k], at[k]);
 	*value = sum;
 }
 
@@ -151,19 +151,19 @@ INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw
  * then 1 to 4. d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
 INLINE void chain(const row *f, const double *tau, const slopes *p, double root, double inverse, double radius, row *out)
 {
-	const row power = {p->v * root, 1.0, 1.0, 1.0, root, root}, slope = {1.5 * root, 0.0, 0.0, 0.0, 0.5 * inverse, 0.5 * inverse};
+	const row power = {{{p->v * root, 1.0, 1.0, 1.0}, {root, root}}}, slope = {{{1.5 * root}, {0.5 * inverse, 0.5 * inverse}}};
 	row by_tau, by_p;
-	MULTIPLY(by_tau, power, f[BY_TAU]);
-	MULTIPLY(by_p, slope, f[VALUE]);
-	MULTIPLY(out[0], power, f[VALUE]);
-	MULTIPLY(out[1], power, f[BY_SHIFT]);
-	MULTIPLY(out[2], power, f[BY_ROLL]);
-	out[3] = out[4] = (row){0};
+	MULTIPLY_ROWS(by_tau, power, f[BY_TAU]);
+	MULTIPLY_ROWS(by_p, slope, f[VALUE]);
+	MULTIPLY_ROWS(out[0], power, f[VALUE]);
+	MULTIPLY_ROWS(out[1], power, f[BY_SHIFT]);
+	MULTIPLY_ROWS(out[2], power, f[BY_ROLL]);
+	out[3] = out[4] = (row){{{0}}};
 	for (int k = 0; k < 4; k++) {
-		ADD_SCALED(out[1 + k], tau[k], by_tau);
-		ADD_SCALED(out[1 + k], p->d[k], by_p);
+		ADD_SCALED_ROW(out[1 + k], tau[k], by_tau);
+		ADD_SCALED_ROW(out[1 + k], p->d[k], by_p);
 	}
-	ADD_SCALED(out[2], -radius, out[1]);
+	ADD_SCALED_ROW(out[2], -radius, out[1]);
 }
 
 INLINE void take(const double (*from)[RS_FIELDS], int field, double *to)

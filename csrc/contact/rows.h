@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The fields of a node as one vector: a node of a zone has eight (row), a node of a closure four (half_row). */
+/* The fields of a node: a node of a zone has eight (row), a node of a closure four (half_row). Vectors of 32 bytes, for GCC lowers longer
+ * ones badly where the processor has none of 64. */
 #ifndef RS_ROWS_H
 #define RS_ROWS_H
 
@@ -7,10 +8,14 @@
 #include "contact_table.h"
 
 #if defined(__GNUC__)
-typedef double row __attribute__((vector_size(8 * RS_FIELDS), may_alias));
 typedef double half_row __attribute__((vector_size(8 * RS_CLOSURE), may_alias));
+typedef struct {
+	half_row half[2];
+} row;
+_Static_assert(sizeof(row) == RS_FIELDS * sizeof(double), "fields of a zone's node");
 #define ADD_SCALED(sum, w, node) ((sum) += (w) * (node))
-#define MULTIPLY(to, one, other) ((to) = (one) * (other))
+#define ADD_SCALED_ROW(sum, w, node) ((sum).half[0] += (w) * (node).half[0], (sum).half[1] += (w) * (node).half[1])
+#define MULTIPLY_ROWS(to, one, other) ((to).half[0] = (one).half[0] * (other).half[0], (to).half[1] = (one).half[1] * (other).half[1])
 #else
 typedef struct {
 	double v[RS_FIELDS];
@@ -21,7 +26,8 @@ typedef struct {
 #define ADD_SCALED(sum, w, node) \
 	for (int f_ = 0; f_ < (int)(sizeof(sum) / sizeof(double)); f_++) \
 	((double *)&(sum))[f_] += (w) * ((const double *)&(node))[f_]
-#define MULTIPLY(to, one, other) \
+#define ADD_SCALED_ROW ADD_SCALED
+#define MULTIPLY_ROWS(to, one, other) \
 	for (int f_ = 0; f_ < (int)(sizeof(to) / sizeof(double)); f_++) \
 	((double *)&(to))[f_] = ((const double *)&(one))[f_] * ((const double *)&(other))[f_]
 #endif

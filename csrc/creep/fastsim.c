@@ -60,7 +60,7 @@ void rs_creep_fastsim(const rs_creep_input *in, int slopes, rs_creep_value *out)
 {
 	memset(out, 0, sizeof *out);
 #if RS_LEVELS
-	if (__builtin_cpu_supports("x86-64-v4"))
+	if (RS_TAKES_WIDEST)
 		fastsim_8(in, slopes, out);
 	else if (__builtin_cpu_supports("x86-64-v3"))
 		fastsim_4(in, slopes, out);
