@@ -164,6 +164,39 @@ def test_energy_of_the_free_body(swing):
     np.testing.assert_allclose(energy[20:], energy[0], rtol=5e-3)  # the links' own energy when the jack lets go
     assert roll.min() == pytest.approx(-np.radians(7.5), rel=5e-3)
     assert np.abs(run["tilt_actuator.a.force"][20:]).max() == 0.0
+    measured = np.gradient(run["tilt_actuator.a.length"], run.time)[30:-1]
+    np.testing.assert_allclose(measured, run["tilt_actuator.a.rate"][30:-1], atol=1e-3 * np.abs(measured).max())
+
+
+THRUST = """mode = "force"
+lag = [0.05, "s"]
+rate_limit = [50, "kN/s"]
+force_limit = [20, "kN"]
+bypass_damping = [3e4, "N*s/m"]
+origin = "test"
+at = [{ name = "a", first = "track", second = "car", first_position = [[0, 0.1, -0.8], "m"], second_position = [[0, 1.0, -0.8], "m"] }]
+[elements.helper]
+type = "spring"
+axis = "y"
+stiffness = [1e5, "N/m"]
+"""
+
+
+def test_an_actuator_of_commanded_force(tmp_path):
+    """Told to push with 30 kN it comes to 19.99 of its 20 kN, by 50 kN each second; stuck it keeps what it pushed with."""
+    head, tail = SWING.split('mode = "length"')
+    path = tmp_path / "thrust.toml"
+    path.write_text(head + THRUST + tail.split("bypass_damping = [3e4, \"N*s/m\"]\n")[1])
+    simulation = Simulation(rs.load_vehicle(path), speed=1.0, contact=None, rate=1000.0, channels=["tilt_actuator.a.*"], faults=[(1.5, "tilt_actuator.a", "stuck")])
+    simulation.run(1.8, controllers=[(lambda controls: controls.command("tilt_actuator.a", 30e3 if controls.time < 1.5 else 0.0), 100.0)])
+    run = simulation.result()
+    assert [run.unit(f"tilt_actuator.a.{name}") for name in ("s", "s.rate", "force", "length")] == ["N", "N/s", "N", "m"]
+    thrust, pushed = -run["tilt_actuator.a.force"], run["tilt_actuator.a.s"]
+    assert thrust.max() <= 20e3 and thrust[-1] == pytest.approx(20e3 * (0.8 + 0.2 * np.tanh(3.5)), rel=1e-6)
+    assert np.diff(pushed).max() == pytest.approx(50.0, rel=1e-6)
+    low = (pushed < 16e3) & (run.time > 0.0)
+    np.testing.assert_allclose(thrust[low], pushed[low], rtol=1e-6)
+    np.testing.assert_allclose(pushed[run.time > 1.501], pushed[-1], rtol=1e-9)
 
 
 def test_bypass_damping_takes_the_energy(swing):

@@ -216,6 +216,12 @@ def test_jacks_that_stick_hold_the_body(tilted):
     assert safe(run) and run.status == "completed"
 
 
+def test_a_file_that_is_written_as_the_run_goes_tells_the_failures(tmp_path):
+    rs.simulate(VEHICLE, speed=20.0, duration=0.2, save=tmp_path / "run.nc", channels=["car.roll"], faults=[(0.1, JACKS[1], "damped"), (0.05, JACKS[0], "free")])
+    found = rs.Run.from_netcdf(tmp_path / "run.nc").info.extra["faults"]
+    assert [(round(fault["time"], 6), fault["element"], fault["fault"]) for fault in found] == [(0.05, JACKS[0], "free"), (0.1, JACKS[1], "damped")]
+
+
 @pytest.mark.parametrize("kind", ["free", "damped"])
 def test_jacks_without_pressure_let_the_body_return(tilted, kind):
     """To where the links bring it: inward by the pendulum's angle m a h = m g rise; swinging for long where nothing damps it."""
