@@ -230,3 +230,34 @@ def test_unknown_quantity_and_wheel(pendolino):
         pendolino.of("tgamma", "wheelset1.left")
     with pytest.raises(SimulationError, match="wheelset1.left"):
         pendolino.of("Y", "wheelset1.lef")
+
+
+def test_speed_and_cant_deficiency_are_each_other():
+    """V^2/R cos(c) - g sin(c) = g I/1.5 both ways; 80 mm at 1000 m without cant is 22.87 m/s, by hand."""
+    from railsym.curving.cases import cases
+
+    asked = cases([300.0, 1000.0], [0.15, 0.02], None, [-0.01, 0.1], GRAVITY)
+    again = cases([300.0], [0.15], asked.speed[:, 0], None, GRAVITY)
+    np.testing.assert_allclose(again.cant_deficiency[:, 0], [-0.01, 0.1], rtol=1e-12)
+    assert cases(1000.0, 0.0, None, 0.08, GRAVITY).speed[0, 0] == pytest.approx(np.sqrt(1000.0 * GRAVITY * 0.08 / 1.5), rel=1e-12)
+    with pytest.raises(SimulationError, match="more than 612 km/h"):
+        cases(50e3, 0.15, None, 0.15, GRAVITY)
+
+
+def test_static_loads_are_in_the_order_of_the_wheels(pendolino):
+    simulation = rs.Simulation(rs.load_vehicle("pendolino"), speed=10.0, contact=CONES, channels="s")
+    loads = simulation.info.extra["wheel_loads"]
+    np.testing.assert_allclose(pendolino.static_load, [loads[wheel] for wheel in pendolino.wheels], rtol=1e-9)
+
+
+def test_angle_of_attack_is_against_the_rails_under_the_wheelset():
+    """Rails that bend over 80 m, slowly run over: wheelsets yaw with them, and stand against them by little."""
+    s = np.arange(0.0, 301.0, 0.5)
+    slope = 5e-3 * 2 * np.pi / 80.0
+    wavy = rs.Track.straight(300.0).with_irregularity(rs.track.MeasuredIrregularity(s, alignment=5e-3 * np.sin(2 * np.pi * s / 80.0)))
+    found = rs.simulate(BOGIE, speed=10.0, track=wavy, duration=28.0, contact=CONES, channels=["s", "wheelset2.yaw", "wheelset2.angle_of_attack"])
+    inside = found["s"] > 100.0
+    assert np.abs(found["wheelset2.yaw"][inside]).max() == pytest.approx(slope, rel=0.3)
+    assert np.abs(found["wheelset2.angle_of_attack"][inside]).max() < 0.4 * slope
+    rails = wavy.rails(found["s"] - 1.35)
+    np.testing.assert_allclose(found["wheelset2.angle_of_attack"], found["wheelset2.yaw"] - np.arctan(rails.left_y_slope), atol=1e-12)

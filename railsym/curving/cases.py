@@ -89,7 +89,7 @@ def cases(radius, cant, speed, cant_deficiency, gravity):
     if slow.any():
         j, k = np.argwhere(slow)[0]
         raise SimulationError(f"cant {1e3 * cant[k]:g} mm with a cant deficiency of {1e3 * lacking[j]:g} mm asks for V^2 = {squares[j, k]:.3g} m^2/s^2 "
-                              f"in a curve of {radius[k]:g} m: the deficiency must be above -{1e3 * cant[k]:g} mm (standing still)")
+                              f"in a curve of {radius[k]:g} m: the deficiency must be above {-1e3 * cant[k]:g} mm (standing still)")
     fast = squares > FASTEST ** 2
     if fast.any():
         j, k = np.argwhere(fast)[0]
