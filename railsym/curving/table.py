@@ -44,7 +44,7 @@ def _number(values, factor, digits):
 
 def _short(name):
     """"wheelset1.left" as "1 left"."""
-    return name.removeprefix("wheelset").replace(".", " ")
+    return name.removeprefix("wheelset").replace(".", " ").strip() or name
 
 
 def message(found):
