@@ -146,10 +146,12 @@ class Laws:
         return curve
 
     def set_numbers(self, numbers, record):
-        """Give some laws, by their places, the numbers (SI) of a record of the same kind and curves; the preload stays."""
-        for number in numbers:
-            for key in _LAW_NUMBERS[1:]:
-                setattr(self.array[number], key, record.get(key, 0.0))
+        """Give some laws of one group, by their places, the numbers (SI) of a record of the same kind and curves; the preload stays."""
+        first = self.array[numbers[0]]
+        changed = {key: record.get(key, 0.0) for key in _LAW_NUMBERS[1:] if getattr(first, key) != record.get(key, 0.0)}
+        for number in numbers if changed else ():
+            for key, value in changed.items():
+                setattr(self.array[number], key, value)
 
     def set_preload(self, values):
         """Set the preload (N) of every law; shape (n,)."""

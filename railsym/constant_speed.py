@@ -24,6 +24,7 @@ _ALIKE = 1e-2
 _SLOW = 1e-2
 
 _faster_states = WeakKeyDictionary()
+_lengths = WeakKeyDictionary()         # of chains of templates, by speed
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +103,13 @@ def chain_length(model: LinearModel, speed: float) -> int:
     translation = model.uniform_translation
     if translation is None or not translation.any():
         return 0
-    return deflate(model, speed).chain.shape[1]
+    if model.template is None or not all(_is_null(m, translation) for m in (model.stiffness, model.damping_constant)):
+        return deflate(model, speed).chain.shape[1]
+    # other numbers that neither hold nor brake the whole vehicle leave the chain as long as it was
+    lengths = _lengths.setdefault(model.template, {})
+    if speed not in lengths:
+        lengths[speed] = deflate(model.template, speed).chain.shape[1]
+    return lengths[speed]
 
 
 def _is_null(matrix, vector) -> bool:

@@ -71,7 +71,7 @@ class CriticalSpeedSolver:
 
     @cached_property
     def _prepared(self):
-        return PreparedVehicle(self.vehicle)
+        return PreparedVehicle(self.vehicle, self.contact)
 
     def __getstate__(self):
         return {name: value for name, value in vars(self).items() if name != "_prepared"}     # C memory stays in its process

@@ -99,7 +99,7 @@ class LinearModel:
     @cached_property
     def states(self) -> tuple[str, ...]:
         """Names of the states: coordinates without cyclic ones, rates ("name.rate") of the second-order ones, internal ones."""
-        parts = _state_parts(self)
+        parts = state_parts(self)
         name = self.coordinates
         return (tuple(name[i] for i in parts.position) + tuple(name[i] + ".rate" for i in parts.second)
                 + tuple(name[i] for i in parts.first))
@@ -112,12 +112,12 @@ class LinearModel:
         ModelError
             A speed that is not positive and finite: creepages are referred to the speed.
         """
-        _check_speed(speed)
+        check_speed(speed)
         return self.damping_constant + speed * self.damping_speed + self.damping_inverse_speed / speed
 
     def damping_slope(self, speed: float) -> np.ndarray:
         """dC/dV, shape (n, n), at a speed in m/s."""
-        _check_speed(speed)
+        check_speed(speed)
         return self.damping_speed - self.damping_inverse_speed / speed**2
 
     def dynamic_stiffness(self, eigenvalue: complex, speed: float) -> np.ndarray:
@@ -140,7 +140,7 @@ class LinearModel:
 
     def state_matrix(self, speed: float) -> np.ndarray:
         """A of x' = A x at a speed in m/s, shape (ns, ns), rows as `states`; a fresh array on every call."""
-        _check_speed(speed)
+        check_speed(speed)
         constant, index, added, with_speed, with_inverse_speed = self._state_matrix_parts
         matrix = constant.copy()
         matrix.ravel()[index] += added + speed * with_speed + with_inverse_speed / speed
@@ -148,7 +148,7 @@ class LinearModel:
 
     def state_matrix_slope(self, speed: float) -> np.ndarray:
         """dA/dV at a speed in m/s, shape (ns, ns)."""
-        _check_speed(speed)
+        check_speed(speed)
         constant, index, _, with_speed, with_inverse_speed = self._state_matrix_parts
         matrix = np.zeros_like(constant)
         matrix.ravel()[index] = with_speed - with_inverse_speed / speed**2
@@ -166,16 +166,16 @@ class LinearModel:
 
     @cached_property
     def _inertia(self):
-        return _BlockInverse(self.mass, _state_parts(self).second)
+        return _BlockInverse(self.mass, state_parts(self).second)
 
     def state_vector(self, shape: np.ndarray, eigenvalue: complex) -> np.ndarray:
         """The state of the motion q = shape exp(lambda t): coordinates, rates, internal coordinates; shape (ns,)."""
-        parts = _state_parts(self)
+        parts = state_parts(self)
         return np.concatenate([shape[parts.position], eigenvalue * shape[parts.second], shape[parts.first]])
 
     def shape_vector(self, state: np.ndarray, eigenvalue: complex) -> np.ndarray:
         """Coordinates (n, ...) of eigenvectors of A (ns, ...): cyclic ones are rate / lambda, and zero for lambda = 0."""
-        parts = _state_parts(self)
+        parts = state_parts(self)
         shape = np.zeros((self.size,) + state.shape[1:], dtype=complex)
         positions, rates, internal = np.split(state, [len(parts.position), len(parts.position) + len(parts.second)])
         shape[parts.second] = rates / np.where(eigenvalue == 0, np.inf, eigenvalue)
@@ -188,7 +188,7 @@ class LinearModel:
 
         The rate and internal rows of A are -G^-1 times the forces, G = [[M, Cvs], [0, Css]]: so G^H y is their part of it.
         """
-        parts = _state_parts(self)
+        parts = state_parts(self)
         left = np.zeros((self.size,) + state.shape[1:], dtype=complex)
         left[np.concatenate([parts.second, parts.first])] = self._inertia_inverse.T @ state[len(parts.position):]
         return left
@@ -196,7 +196,7 @@ class LinearModel:
     @cached_property
     def _inertia_inverse(self) -> np.ndarray:
         """G^-1, G = [[M, Cvs], [0, Css]]."""
-        parts = _state_parts(self)
+        parts = state_parts(self)
         both = np.concatenate([parts.second, parts.first])
         columns = self.mass[both[:, None], parts.second], self.damping_constant[both[:, None], parts.first]
         return np.linalg.inv(np.hstack(columns))
@@ -252,7 +252,7 @@ class _StateParts:
     runs: dict
 
 
-def _state_parts(model: LinearModel) -> _StateParts:
+def state_parts(model: LinearModel) -> _StateParts:
     return _parts_of_masks(model.first_order.tobytes(), model.cyclic.tobytes())
 
 
@@ -271,7 +271,7 @@ def _runs(index):
             for start, stop in zip(np.r_[0, breaks], np.r_[breaks, len(index)]) if stop > start]
 
 
-def _check_speed(speed: float) -> None:
+def check_speed(speed: float) -> None:
     if not 0.0 < speed < np.inf:
         raise ModelError(f"speed {speed} m/s: a finite speed above 0 m/s is needed, because creepages are referred to it")
 
@@ -282,7 +282,7 @@ def _constant_state_matrix(model: LinearModel):
     With v = q' of second-order coordinates and internal coordinates s:
     s' = -Css^-1 (Ksv q + Csv v + Kss s) and v' = -Mvv^-1 (Kvv q + Kvs s + Cvv(V) v + Cvs s').
     """
-    parts = _state_parts(model)
+    parts = state_parts(model)
     v, s = parts.second, parts.first
     count, n_position = len(v), len(parts.position)
     matrix = np.zeros((n_position + count + len(s),) * 2)
@@ -312,7 +312,7 @@ def _place_rows(target, parts, rows, model, starts):
 
 def _changing_entries(model, size):
     """Flat places in A, and what contact and speed add there: the contact's -M^-1 K, A1 and A2."""
-    parts, n = _state_parts(model), model.size
+    parts, n = state_parts(model), model.size
     if model.base is None:
         added, inertia = np.zeros((n, n)), model._inertia
     else:

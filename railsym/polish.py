@@ -137,9 +137,10 @@ class _Bordered:
 
     def __init__(self, model: LinearModel, eigenvalue, speed, right, left):
         self.row, self.column, entries = model.entries
+        self.place = self.row + (model.size + 1) * self.column      # in the bordered matrix, column after column
         diagonal = self.row == self.column
         stiff = np.zeros(model.size)
-        stiff[self.row[diagonal]] = np.abs(_factors(eigenvalue, speed) @ entries[:, diagonal])
+        stiff[self.row[diagonal]] = np.abs(_combined(_factors(eigenvalue, speed), entries[:, diagonal]))
         scale = 1.0 / np.sqrt(np.where(stiff > 0, stiff, 1.0))
         self.entries = entries * (scale[self.row] * scale[self.column])
         self.scale, self.right, self.left = scale, _unit(right / scale), _unit(left / scale)
@@ -149,8 +150,9 @@ class _Bordered:
         from scipy.linalg.lapack import zgetrf
 
         n = len(self.scale)
-        matrix = np.zeros((n + 1, n + 1), dtype=complex, order="F")
-        matrix[self.row, self.column] = _factors(eigenvalue, speed) @ self.entries
+        values = np.zeros((n + 1) ** 2, dtype=complex)
+        values[self.place] = _combined(_factors(eigenvalue, speed), self.entries)
+        matrix = values.reshape(n + 1, n + 1).T
         matrix[:n, n], matrix[n, :n] = self.left, self.right.conj()
         *self.factors, status = zgetrf(matrix, overwrite_a=True)
         if status:
@@ -170,7 +172,8 @@ class _Bordered:
 
     def _slopes(self, eigenvalue, speed, x, y):
         """-y^H (dT/dlambda) x and -y^H (dT/dV) x."""
-        inertia, constant, with_speed, with_inverse_speed, _ = self.entries @ (y.conj()[self.row] * x[self.column])
+        terms = (y.conj()[self.row] * x[self.column]).view(float).reshape(-1, 2)
+        inertia, constant, with_speed, with_inverse_speed, _ = (self.entries @ terms).view(complex)[:, 0]
         by_eigenvalue = 2 * eigenvalue * inertia + constant + speed * with_speed + with_inverse_speed / speed
         return -by_eigenvalue, -eigenvalue * (with_speed - with_inverse_speed / speed**2)
 
@@ -180,7 +183,7 @@ class _Bordered:
         The vectors belong to the point before the last step: one correction with the factors of that point leaves an error of the
         order of the step squared, which is rounding.
         """
-        entries = _factors(eigenvalue, speed) @ self.entries
+        entries = _combined(_factors(eigenvalue, speed), self.entries)
         x = self._corrected(self.right, entries, self.row, self.column, 0)
         y = self._corrected(self.left, entries.conj(), self.column, self.row, 2)
         by_eigenvalue, by_speed = self._slopes(eigenvalue, speed, x, y)
@@ -202,6 +205,12 @@ class _Bordered:
 def _factors(eigenvalue, speed):
     """Factors of M, C0, C1, C2 and K in T(lambda, V)."""
     return np.array([eigenvalue**2, eigenvalue, eigenvalue * speed, eigenvalue / speed, 1.0])
+
+
+def _combined(factors, entries):
+    """Complex factors (5,) times real entries (5, k), without a complex copy of the entries."""
+    real, imaginary = np.array([factors.real, factors.imag]) @ entries
+    return real + 1j * imaginary
 
 
 def _unit(vector):

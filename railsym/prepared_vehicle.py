@@ -28,6 +28,8 @@ class PreparedVehicle:
     Parameters
     ----------
     vehicle : Vehicle
+    contact : LinearContact, optional
+        Of the model from which those of the cases take what numbers do not change.
 
     Raises
     ------
@@ -35,13 +37,13 @@ class PreparedVehicle:
         A vehicle without static equilibrium or without wheelsets.
     """
 
-    def __init__(self, vehicle):
+    def __init__(self, vehicle, contact=LinearContact()):
         self.vehicle = vehicle
         self._rolling = RollingVehicle(vehicle)
         self._model = self._rolling.model
         self._statics = Statics(self._model)
         self._stiffness = component_stiffness(self._model)
-        self._nominal = self._rolling._structure
+        self._nominal = self._rolling.linear_model(contact)
         self._load = self._weight()
         self._rows = _rows(self._model)
         self._dirty = set()     # groups of bodies and elements whose numbers in the tables are not those of the vehicle

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from railsym.linear_model import LinearModel
+from railsym.linear_model import LinearModel, check_speed, state_parts
 
 KEEP_ALL = 24          # second-order coordinates: a model this small is not worth reducing
 # rad/s and m/s at which dampers and creep forces are weighed: hunting in the middle of its range
@@ -81,33 +81,23 @@ class Reduction:
         missing : ndarray, shape (n, k)
             What the dropped modes add to the full shapes.
         """
-        reduced = self.model
-        onto, back = self._couplings
-        factor = np.array([eigenvalue**2, eigenvalue, eigenvalue * speed, eigenvalue / speed, np.ones_like(eigenvalue)])
-        parts = 5, self.dropped.shape[1], len(eigenvalue)
-        residual = (factor[:, None] * real_times(onto, right).reshape(parts)).sum(axis=0)
-        left_residual = (factor.conj()[:, None] * real_times(back, left).reshape(parts)).sum(axis=0)
-        stiffness, damping, mass = self.dropped_pencil[:, :, None]
-        amplitude = -residual / (stiffness + eigenvalue * damping + eigenvalue**2 * mass)
+        x, y, conjugate = self.expand(right), self.expand(left), eigenvalue.conj()
+        full, reduced = self.full, self.model
+        mass, damping, stiffness = full.mass, full.damping(speed), full.stiffness
+        residual = real_times(mass, x * eigenvalue**2) + real_times(damping, x * eigenvalue) + real_times(stiffness, x)
+        left_residual = real_times(mass.T, y * conjugate**2) + real_times(damping.T, y * conjugate) + real_times(stiffness.T, y)
+        own_stiffness, own_damping, own_mass = self.dropped_pencil[:, :, None]
+        amplitude = -real_times(self.dropped.T, residual) / (own_stiffness + eigenvalue * own_damping + eigenvalue**2 * own_mass)
         slope = ((reduced.mass @ (right * (2 * eigenvalue)) + reduced.damping(speed) @ right) * left.conj()).sum(axis=0)
         lag = eigenvalue**2 * ((self.lag @ right) * left.conj()).sum(axis=0)
-        change = (lag - (left_residual.conj() * amplitude).sum(axis=0)) / slope
+        change = (lag - (real_times(self.dropped.T, left_residual).conj() * amplitude).sum(axis=0)) / slope
         return change, real_times(self.dropped, amplitude)
-
-    @cached_property
-    def _couplings(self):
-        """D^T X B and D^T X^T B of the dropped modes D and the basis B for M, C0, C1, C2 and K, each stacked, (5 k, m)."""
-        full = self.full
-        matrices = full.mass, full.damping_constant, full.damping_speed, full.damping_inverse_speed, full.stiffness
-        onto = [self.dropped.T @ (matrix @ self.basis) for matrix in matrices]
-        back = [(self.dropped.T @ matrix.T) @ self.basis for matrix in matrices]
-        return np.vstack(onto), np.vstack(back)
 
 
 def real_times(matrix, values):
     """Real matrix times complex values, without a complex copy of the matrix."""
-    parts = matrix @ np.hstack([values.real, values.imag])
-    return parts[:, :values.shape[1]] + 1j * parts[:, values.shape[1]:]
+    values = np.ascontiguousarray(values, dtype=complex)
+    return (matrix @ values.view(float)).view(complex)
 
 
 def reduce_model(model: LinearModel, frequency_limit: float, extra: np.ndarray | None = None) -> Reduction:
@@ -257,6 +247,44 @@ def _orthonormal(shapes, mass):
     return shapes @ (directions[:, keep] / np.sqrt(square[keep]))
 
 
+def _coordinates(vector, basis, mass, kept_alone):
+    """Coordinates of a vector in the span of a basis whose first columns are orthonormal in the mass metric, the others unit vectors."""
+    shapes, found = basis[:, :basis.shape[1] - len(kept_alone)], np.zeros(basis.shape[1])
+    found[shapes.shape[1]:] = vector[kept_alone]
+    for _ in range(2):           # the second time takes what rounding left of orthogonality
+        found[:shapes.shape[1]] += shapes.T @ (mass @ (vector - basis @ found))
+    return found
+
+
+class _Projected(LinearModel):
+    """A small model with full matrices: its state matrix is made of a few products instead of entry by entry."""
+
+    def state_matrix(self, speed):
+        check_speed(speed)
+        constant, with_speed, with_inverse_speed = self._powers
+        return constant + (speed * with_speed + with_inverse_speed / speed)
+
+    def state_matrix_slope(self, speed):
+        check_speed(speed)
+        _, with_speed, with_inverse_speed = self._powers
+        return with_speed - with_inverse_speed / speed**2
+
+    @cached_property
+    def _powers(self):
+        """A0, A1 and A2 of A(V) = A0 + V A1 + A2 / V."""
+        parts = state_parts(self)
+        moves, count = len(parts.position), len(parts.second)
+        rows = np.concatenate([parts.second, parts.first])[:, None]
+        powers = np.zeros((3, moves + len(rows), moves + len(rows)))
+        powers[0, np.arange(moves), moves + np.searchsorted(parts.second, parts.position)] = 1.0
+        forces = np.hstack([self.stiffness[rows, parts.position], self.damping_constant[rows, parts.second],
+                            self.stiffness[rows, parts.first]])
+        powers[0, moves:] = -self._inertia_inverse @ forces
+        for power, damping in zip(powers[1:], (self.damping_speed, self.damping_inverse_speed)):
+            power[moves:, moves:moves + count] = -self._inertia_inverse @ damping[rows, parts.second]
+        return powers
+
+
 def _projected(model: LinearModel, basis, kept_alone, lag) -> LinearModel:
     count = basis.shape[1]
     first_order, cyclic = np.zeros(count, bool), np.zeros(count, bool)
@@ -264,8 +292,8 @@ def _projected(model: LinearModel, basis, kept_alone, lag) -> LinearModel:
     cyclic[count - len(kept_alone):] = model.cyclic[kept_alone]
     translation = model.uniform_translation
     if translation is not None:
-        translation = np.linalg.lstsq(basis, translation, rcond=None)[0] if translation.any() else np.zeros(count)
+        translation = _coordinates(translation, basis, model.mass, kept_alone) if translation.any() else np.zeros(count)
     names = tuple(f"basis{i}" for i in range(count - len(kept_alone))) + tuple(model.coordinates[i] for i in kept_alone)
     matrices = (model.mass, model.stiffness, model.damping_constant, model.damping_speed, model.damping_inverse_speed)
     mass, *others = (basis.T @ (matrix @ basis) for matrix in matrices)
-    return LinearModel(names, mass + lag, *others, first_order, cyclic, translation=translation)
+    return _Projected(names, mass + lag, *others, first_order, cyclic, translation=translation)

@@ -23,7 +23,7 @@ from railsym.reduction import Reduction, real_times, reduce_model
 FIRST_STEP = 1.0           # in log(speed): four intervals from 5 to 250 m/s
 _SHORT_STEP = 0.2          # in log(speed): a step towards a crossing that is expected ahead is not shorter than this
 _BEYOND = 0.08             # in log(speed): how far beyond an expected crossing such a step goes, besides a tenth of its length
-_ENRICHED = 3              # times that a scan begins anew with a better basis
+_ENRICHED = 1              # times that a scan begins anew with a better basis
 _SMALLEST_STEP = 2e-3      # in log(speed): paths that are not resolved at 0.2 % of the speed are reported
 _SIMILAR = 0.5             # product of two biorthogonalities: 1 for one and the same mode
 _WATCH = 0.12              # modes within this of the highest damping ratio asked for are followed closely
@@ -56,15 +56,13 @@ class ScanNode:
     def position(self) -> float:
         return float(np.log(self.speed))
 
-    @cached_property
-    def right(self):
-        """T x = 0 in the reduced model."""
-        return self.reduced.shape_vector(self.state_right, self.eigenvalue)
+    def right(self, modes):
+        """T x = 0 in the reduced model, columns for some modes, or one vector."""
+        return self.reduced.shape_vector(self.state_right[:, modes], self.eigenvalue[modes])
 
-    @cached_property
-    def left(self):
-        """y^H T = 0 in the reduced model, with y^H (dT/dlambda) x = 1."""
-        return self.reduced.left_vector(self.state_left)
+    def left(self, modes):
+        """y^H T = 0 in the reduced model, with y^H (dT/dlambda) x = 1; as `right`."""
+        return self.reduced.left_vector(self.state_left[:, modes])
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +157,7 @@ class SpeedScan:
         """Newton's method from the vectors of a mode; None where it strays or meets a crossing that is taken."""
         (first, _), (second, _) = crossing.ends
         margin = 0.2 * (second.position - first.position) + 0.01
-        vectors = self.reduction.expand(node.right[:, mode]), self.reduction.expand(node.left[:, mode])
+        vectors = self.reduction.expand(node.right(mode)), self.reduction.expand(node.left(mode))
         try:
             point = polish_crossing(self.model, np.exp(position), eigenvalue, *vectors, crossing.damping_ratio)
         except ConvergenceError:
@@ -170,8 +168,8 @@ class SpeedScan:
     def polish_start(self, path: int) -> EigenPoint:
         """A mode of the lowest speed on the full matrices."""
         node = self.nodes[0]
-        return polish_eigenvalue(self.model, node.speed, node.eigenvalue[path], self.reduction.expand(node.right[:, path]),
-                                 self.reduction.expand(node.left[:, path]))
+        return polish_eigenvalue(self.model, node.speed, node.eigenvalue[path], self.reduction.expand(node.right(path)),
+                                 self.reduction.expand(node.left(path)))
 
     def node(self, speed) -> ScanNode:
         """Solve the reduced eigenproblem at a speed in m/s."""
@@ -296,7 +294,7 @@ def _missing_at(scan: SpeedScan, node):
     """What the dropped modes add to the shapes of watched modes at one speed, where they move the eigenvalue too much."""
     watched = np.flatnonzero(excess(node.eigenvalue, max(scan.damping_ratios) + _WATCH) > 0)
     value = node.eigenvalue[watched]
-    change, missing = scan.reduction.correction(value, node.speed, node.right[:, watched], node.left[:, watched])
+    change, missing = scan.reduction.correction(value, node.speed, node.right(watched), node.left(watched))
     distance = np.min([np.abs(excess(value + change, z)) for z in scan.damping_ratios], axis=0)
     poor = (np.abs(change) > _REDUCTION_ERROR * np.abs(value)) & (np.abs(change) > _REDUCTION_MARGIN * distance)
     return [missing[:, i] for i in np.flatnonzero(poor)]

@@ -238,7 +238,7 @@ class _Search:
 
     @staticmethod
     def _shape(part, scan, node, mode):
-        return part.expand(scan.reduction.expand(node.right[:, mode]))
+        return part.expand(scan.reduction.expand(node.right(mode)))
 
     def _unstable_at_start(self):
         """Paths that count as unstable at the lowest speed; the others below the criterion are noted."""

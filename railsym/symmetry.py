@@ -9,6 +9,7 @@ do not see each other, and two problems of half the size replace one.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -33,8 +34,6 @@ class Part:
 
     Attributes
     ----------
-    model : LinearModel
-        Its matrices, in coordinates that are orthonormal combinations of those of the whole.
     parity : int
         +1 motions equal to their mirror image, -1 motions opposite to it, 0 the whole model.
     first, second : ndarray of int
@@ -43,15 +42,41 @@ class Part:
         Their factors.
     whole : LinearModel
         The model that was split.
+    known : LinearModel or None
+        The same half of the base or template of the whole: only the matrices that differ are folded.
     """
 
-    model: LinearModel
     parity: int
     first: np.ndarray
     second: np.ndarray
     weight_first: np.ndarray
     weight_second: np.ndarray
     whole: LinearModel
+    known: LinearModel | None = None
+
+    @cached_property
+    def model(self) -> LinearModel:
+        """The matrices of the part, in coordinates that are orthonormal combinations of those of the whole."""
+        whole = self.whole
+        if self.parity == 0:
+            return whole
+        if self.known is not None:
+            origin = whole.base or whole.template
+            changed = {name: self._folded(getattr(whole, name)) for name in MATRICES if getattr(whole, name) is not getattr(origin, name)}
+            related = {"base": self.known} if origin is whole.base else {"template": self.known}
+            return replace(self.known, **changed, vehicle=whole.vehicle, contact=whole.contact, **related)
+        translation = whole.uniform_translation
+        if translation is not None:
+            translation = self.weight_first * translation[self.first] + self.weight_second * translation[self.second]
+        return LinearModel(tuple(whole.coordinates[i] for i in self.first), *(self._folded(getattr(whole, name)) for name in MATRICES),
+                           whole.first_order[self.first], whole.cyclic[self.first], whole.vehicle, whole.contact,
+                           translation=np.zeros(len(self.first)) if translation is None else translation)
+
+    def _folded(self, matrix):
+        # the matrix commutes with the mirroring: a row of the image gives nothing that the row itself does not give
+        rows = matrix[self.first]
+        columns = rows[:, self.first] * self.weight_first + rows[:, self.second] * self.weight_second
+        return columns / self.weight_first[:, None]
 
     def expand(self, shape: np.ndarray) -> np.ndarray:
         """Vectors of the part (m, ...) as vectors of the whole (n, ...)."""
@@ -78,7 +103,7 @@ def split(model: LinearModel) -> tuple[Part, ...]:
     mirror = find_mirror(model)
     if mirror is None:
         index, one = np.arange(model.size), np.ones(model.size)
-        return (Part(model, 0, index, index, one, 0 * one, model),)
+        return (Part(0, index, index, one, 0 * one, model),)
     known = model.base or model.template
     if known is None or mirror is not _known_mirrors.get(known):
         return tuple(_part(model, mirror, parity) for parity in (-1, 1))
@@ -115,7 +140,7 @@ def _commutes(matrix, permutation, sign) -> bool:
 
 
 def _part(model: LinearModel, mirror, parity: int, known: LinearModel | None = None) -> Part:
-    """One half of a model; where the same half of its base or template is known, only the matrices that differ are folded."""
+    """One half of a model."""
     permutation, sign = mirror
     index = np.arange(model.size)
     keep = (index < permutation) | ((index == permutation) & (sign == parity))
@@ -123,26 +148,7 @@ def _part(model: LinearModel, mirror, parity: int, known: LinearModel | None = N
     alone = first == second
     weight_first = np.where(alone, 1.0, np.sqrt(0.5))
     weight_second = np.where(alone, 0.0, parity * sign[first] * np.sqrt(0.5))
-
-    def folded(matrix):
-        # the matrix commutes with the mirroring: a row of the image gives nothing that the row itself does not give
-        rows = matrix[first]
-        columns = rows[:, first] * weight_first + rows[:, second] * weight_second
-        return columns / weight_first[:, None]
-
-    if known is not None:
-        origin = model.base or model.template
-        changed = {name: folded(getattr(model, name)) for name in MATRICES if getattr(model, name) is not getattr(origin, name)}
-        related = {"base": known} if origin is model.base else {"template": known}
-        half = replace(known, **changed, vehicle=model.vehicle, contact=model.contact, **related)
-        return Part(half, parity, first, second, weight_first, weight_second, model)
-    translation = model.uniform_translation
-    if translation is not None:
-        translation = weight_first * translation[first] + weight_second * translation[second]
-    part = LinearModel(tuple(model.coordinates[i] for i in first), *(folded(getattr(model, name)) for name in MATRICES),
-                       model.first_order[first], model.cyclic[first], model.vehicle, model.contact,
-                       translation=np.zeros(len(first)) if translation is None else translation)
-    return Part(part, parity, first, second, weight_first, weight_second, model)
+    return Part(parity, first, second, weight_first, weight_second, model, known)
 
 
 def _mirror_of_vehicle(model: LinearModel):

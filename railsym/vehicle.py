@@ -186,7 +186,8 @@ class Vehicle:
         }
         bodies = bodies | changed_bodies if changed_bodies else bodies
         elements = elements | changed_elements if changed_elements else elements
-        return _vehicle(layout, values, self.configuration, bodies, elements, curves)
+        contact = _contact(values) if "contact" in touched else self.contact
+        return _vehicle(layout, values, self.configuration, bodies, elements, curves, contact)
 
 
 def _assemble(layout, values, configuration):
@@ -194,16 +195,20 @@ def _assemble(layout, values, configuration):
     bodies = {name: build_bodies(group, values) for name, group in layout.bodies.items()}
     curves = FrozenDict({name: build_curve(name, values) for name in layout.curves})
     elements = {name: build_elements(group, values, curves) for name, group in layout.elements.items()}
-    return _vehicle(layout, values, configuration, bodies, elements, curves)
+    return _vehicle(layout, values, configuration, bodies, elements, curves, _contact(values))
 
 
-def _vehicle(layout, values, configuration, bodies, elements, curves):
+def _contact(values):
+    return FrozenDict({name[8:]: q.value for name, q in values.items() if name.startswith("contact.")})
+
+
+def _vehicle(layout, values, configuration, bodies, elements, curves, contact):
     return Vehicle(
         name=layout.name,
         description=layout.description,
         bodies=tuple(body for group in bodies.values() for body in group),
         elements=tuple(element for group in elements.values() for element in group),
-        contact=FrozenDict({name[8:]: q.value for name, q in values.items() if name.startswith("contact.")}),
+        contact=contact,
         gravity=values["vehicle.gravity"].value,
         configurations=layout.configurations,
         configuration=configuration,

@@ -180,7 +180,7 @@ def test_reduced_model_and_its_correction():
     node = scan.node(47.0)
     k = np.flatnonzero((node.eigenvalue.imag < 100.0) & (excess(node.eigenvalue, 0.2) > 0))
     dense = dense_eigenvalues(model, 47.0)
-    change, _ = scan.reduction.correction(node.eigenvalue[k], 47.0, node.right[:, k], node.left[:, k])
+    change, _ = scan.reduction.correction(node.eigenvalue[k], 47.0, node.right(k), node.left(k))
     error = np.array([np.abs(dense - v).min() for v in node.eigenvalue[k]])
     corrected = np.array([np.abs(dense - v).min() for v in node.eigenvalue[k] + change])
     assert (error < 2e-3 * np.abs(node.eigenvalue[k])).all()
