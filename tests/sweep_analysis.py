@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from railsym.sweep import Analysis, Input, Output
+from railsym.sweep import Analysis, CriticalSpeed, Input, Output
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,24 @@ class Logged(Analysis):
             return {"y": x * x, "word": f"x is {x:g}"}
 
         return solve
+
+
+@dataclass(frozen=True)
+class LoggedSpeed(CriticalSpeed):
+    """A critical speed, with the conicity of every case begun in a log."""
+
+    log: str = ""
+    kind = "logged_speed"
+
+    def solver(self, vehicle):
+        solve = super().solver(vehicle)
+
+        def logging(case):
+            with open(self.log, "ab", buffering=0) as log:
+                log.write(f"{case.settings['contact.conicity']!r}\n".encode())
+            return solve(case)
+
+        return logging
 
 
 def numbers(log):

@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 TESTS = Path(__file__).parent
@@ -56,3 +56,20 @@ def started(*arguments, **options):
         for pid in below:
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
+
+
+@contextmanager
+def dask_client(folder, workers=2):
+    """A client of a scheduler with workers, each a process with a nanny that replaces it when it is lost."""
+    from distributed import Client
+
+    where = ("--scheduler-file", folder / "scheduler.json")
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
+    with ExitStack() as stack:
+        stack.enter_context(started("-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard", *where, **quiet))
+        for _ in range(workers):
+            stack.enter_context(started("-m", "distributed.cli.dask_worker", *where, "--nthreads", "1", "--no-dashboard", **quiet))
+        wait_for((folder / "scheduler.json").exists)
+        client = stack.enter_context(Client(scheduler_file=str(folder / "scheduler.json"), timeout=60))
+        client.wait_for_workers(workers, timeout=60)
+        yield client

@@ -6,11 +6,10 @@ import shutil
 import signal
 import subprocess
 import sys
-from contextlib import ExitStack
 
 import pytest
 from sweep_analysis import Logged, numbers
-from sweep_processes import ENVIRONMENT, TESTS, started, wait_for
+from sweep_processes import ENVIRONMENT, TESTS, dask_client
 
 import railsym as rs
 from railsym import sweep
@@ -22,18 +21,8 @@ def study(folder, cases=60, **options):
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory):
-    """A client of a scheduler with two workers, each a process with a nanny that replaces it when it is lost."""
-    distributed = pytest.importorskip("distributed")
-    folder = tmp_path_factory.mktemp("dask")
-    where = ("--scheduler-file", folder / "scheduler.json")
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
-    with ExitStack() as stack:
-        stack.enter_context(started("-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard", *where, **quiet))
-        for _ in range(2):
-            stack.enter_context(started("-m", "distributed.cli.dask_worker", *where, "--nthreads", "1", "--no-dashboard", **quiet))
-        wait_for(lambda: (folder / "scheduler.json").exists())
-        client = stack.enter_context(distributed.Client(scheduler_file=str(folder / "scheduler.json"), timeout=60))
-        client.wait_for_workers(2, timeout=60)
+    pytest.importorskip("distributed")
+    with dask_client(tmp_path_factory.mktemp("dask")) as client:
         yield client
 
 

@@ -24,40 +24,49 @@ def done_in(store):
         return set()
 
 
-def killed_and_resumed(study_file, store, log, kills, random, least):
-    """Kill a study by SIGKILL at random moments after it has begun to compute; returns cases done at each kill, and cases computed twice."""
-    before, twice = [set()], []
+def killed_and_resumed(folder, study, kills, random, least, workers=2):
+    """Run a study that logs its first factor in processes of its own, killed by SIGKILL at random moments and resumed.
+
+    Returns
+    -------
+    list of set of int
+        Cases in the store or its journal after every kill.
+    int
+        Cases computed in all.
+    """
+    log, store = folder / "log", folder / "r.nc"
+    study.save(folder / "study.toml")
+    number = {value: case for case, value in enumerate(study.rows()[:, 0].tolist())}
+    before, count = [set()], 0
     while True:
         log.unlink(missing_ok=True)
-        with started(TESTS / "sweep_script.py", study_file, store, 2) as process:
+        with started(TESTS / "sweep_script.py", folder / "study.toml", store, workers) as process:
             if len(before) > kills:
                 assert process.wait() == 0
             else:
                 begun = random.integers(*least)
-                wait_for(lambda: process.poll() is not None or len(numbers(log)) >= begun)
-                workers = children(process.pid)
+                wait_for(lambda: process.poll() is not None or len(numbers(log)) >= begun, 300.0)
+                workers_there = children(process.pid)
                 process.send_signal(signal.SIGKILL)
                 process.wait()
-                wait_for(lambda: not any(map(alive, workers)), 20.0)      # workers end by themselves
-        computed = numbers(log)
-        assert not before[-1] & set(map(int, computed)), "cases in the journal were computed again"
+                wait_for(lambda: not any(map(alive, workers_there)), 60.0)      # workers end by themselves
+        computed = [number[value] for value in numbers(log)]
+        assert not before[-1] & set(computed), "cases in the journal were computed again"
         assert len(computed) == len(set(computed))
-        twice += computed
+        count += len(computed)
         if len(before) > kills:
-            return before, twice
+            return before, count
         before.append(done_in(store))
 
 
 def check(tmp_path, cases, kills, seconds, least):
-    log = tmp_path / "log"
-    study = rs.Study("wheelset", Logged(log=str(log), seconds=seconds, fail=(7.0,)), {"x": [float(k) for k in range(cases)]}, sweep.FullGrid())
-    study.save(tmp_path / "study.toml")
+    study = rs.Study("wheelset", Logged(log=str(tmp_path / "log"), seconds=seconds, fail=(7.0,)), {"x": [float(k) for k in range(cases)]}, sweep.FullGrid())
     study.run(tmp_path / "whole.nc", workers=2)
-    before, computed = killed_and_resumed(tmp_path / "study.toml", tmp_path / "r.nc", log, kills, np.random.default_rng(1), least)
+    before, computed = killed_and_resumed(tmp_path, study, kills, np.random.default_rng(1), least)
     assert (tmp_path / "r.nc").read_bytes() == (tmp_path / "whole.nc").read_bytes() and not journal_of(tmp_path / "r.nc").exists()
     assert all(one <= other for one, other in zip(before, before[1:])) and len(before[-1]) > 0
     # twice: only what was under way when the study was killed, 2 chunks of 0.1 s for each of 2 workers, and one being written
-    assert len(computed) - cases <= kills * 5 * (int(0.1 / seconds) + 1)
+    assert computed - cases <= kills * 5 * (int(0.1 / seconds) + 1)
     return before
 
 

@@ -100,7 +100,7 @@ class _Dispatcher:
         self.numbers, self.texts = (sum(out.text is kind for out in study.outputs.values()) for kind in (False, True))
         self.place, self.feed, self.size = place, feed, _Size(place.seconds)
         self.ready = SimpleQueue()
-        self.under_way = {}              # future: (cases, rows, attempt, with the study)
+        self.under_way = {}              # future: (cases, rows)
         self.suspects = []               # chunks whose worker was lost
         self.sent = self.done = self.lost = 0
 
@@ -122,71 +122,69 @@ class _Dispatcher:
                 future.cancel()
 
     def _fill(self):
-        """Keep enough chunks under way; none while a broken pool is emptied."""
-        if self.suspects and self.place.renewable:
-            return
-        workers = self.place.capacity()
-        while self.suspects and len(self.under_way) < _WAITING * workers:
-            self._send(*self.suspects.pop())
-        while self.feed.left and len(self.under_way) < _WAITING * workers:
+        """Keep enough chunks under way; none while there are suspects, which are to be alone."""
+        workers = 0 if self.suspects else self.place.capacity()
+        while self.feed.left and not self.suspects and len(self.under_way) < _WAITING * workers:
             self._send(*self.feed.take(self.size(self.feed.left, workers)))
 
-    def _send(self, cases, rows, attempt=0, whole=None):
+    def _send(self, cases, rows, whole=None):
         """Submit a chunk: with the study while workers are still new, by its hash alone afterwards."""
         whole = self.sent < _WAITING * self.place.capacity() if whole is None else whole
         self.sent += 1
         try:
-            future = self.place.submit(run_chunk, self.key, self.version, self.payload if whole else None, cases, rows, (attempt, whole))
+            future = self.place.submit(run_chunk, self.key, self.version, self.payload if whole else None, cases, rows, whole)
         except BrokenExecutor as error:
-            if not self.place.renewable:
-                raise WorkersLostError(f"the executor is broken: {error}; what was computed is kept, run the study again with another one") from error
-            self.suspects.append((cases, rows, attempt))
+            self._given_up(error)
+            self.suspects.append((cases, rows))
             return
-        self.under_way[future] = cases, rows, attempt
+        self.under_way[future] = cases, rows
         future.add_done_callback(self.ready.put)
 
     def _received(self, future):
         """The chunk of a finished future; None where it has to be computed again."""
-        cases, rows, attempt = self.under_way.pop(future)
+        cases, rows = self.under_way.pop(future)
         try:
             chunk = future.result()
         except (BrokenExecutor, CancelledError) as error:
-            if not self.place.renewable:
-                raise WorkersLostError(f"the executor gave up: {type(error).__name__} {error}; what was computed is kept, run the study again") from error
-            self.suspects.append((cases, rows, attempt))
+            self._given_up(error)
+            self.suspects.append((cases, rows))
             return None
         except Exception as error:
             if not is_lost_worker(error):
                 raise
-            return self._lost(cases, rows, attempt)
+            self.suspects.append((cases, rows))
+            return None
         if chunk is None:
-            self._send(cases, rows, attempt, True)
+            self._send(cases, rows, True)
             return None
         self.size.learn(chunk)
         self.done += len(cases)
         return chunk
 
-    def _lost(self, cases, rows, attempt):
-        """A chunk whose workers died under an executor that survives it: its cases one by one, then the error is the case's."""
-        if attempt and len(cases) == 1:
-            return self._blamed(cases)
-        self.suspects += [(cases[k:k + 1], rows[k:k + 1], attempt + 1) for k in range(len(cases))]
-        return None
+    def _given_up(self, error):
+        """An executor that is not ours cannot be opened anew."""
+        if not self.place.renewable:
+            raise WorkersLostError(f"the executor gave up: {type(error).__name__} {error}; what was computed is kept, run the study again") from error
 
     def _one_by_one(self):
-        """After our pool broke: every case that was under way alone in a pool, so that the one that breaks it is known."""
+        """After workers were lost: every case that was under way, with nothing else under way, so that the one that ends them is known."""
         self.place.renew()
         chunks, self.suspects = self.suspects, []
-        for cases, rows, _ in chunks:
+        for cases, rows in chunks:
             for k in range(len(cases)):
                 yield self._alone(cases[k:k + 1], rows[k:k + 1])
         self.sent = 0                    # the next workers are new
 
     def _alone(self, cases, rows):
         try:
-            chunk = self.place.submit(run_chunk, self.key, self.version, self.payload, cases, rows).result()
-        except BrokenExecutor:
+            chunk = self.place.submit(run_chunk, self.key, self.version, self.payload, cases, rows, "alone").result()
+        except (BrokenExecutor, CancelledError) as error:
+            self._given_up(error)
             self.place.renew()
+            return self._blamed(cases)
+        except Exception as error:
+            if not is_lost_worker(error):
+                raise
             return self._blamed(cases)
         self.done += 1
         return chunk

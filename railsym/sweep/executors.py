@@ -8,11 +8,15 @@ from __future__ import annotations
 
 import os
 import threading
+import time
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import suppress
 
+import numpy as np
+
 from railsym.sweep.errors import SweepError
 
+_ASKED = 2.0             # s between two questions how many workers there are
 PATIENCE = 30.0          # s until a scheduler must have answered
 
 
@@ -80,12 +84,18 @@ class Given:
 
     def __init__(self, executor):
         self.executor = executor
+        self._capacity, self._asked = 1, -np.inf
 
     def submit(self, function, *arguments):
         return self.executor.submit(function, *arguments)
 
     def capacity(self):
-        """Chunks that can be computed at the same time, as far as the executor tells."""
+        """Chunks that can be computed at the same time, as far as the executor tells; asked again after some seconds."""
+        if time.monotonic() - self._asked > _ASKED:
+            self._capacity, self._asked = self._workers(), time.monotonic()
+        return self._capacity
+
+    def _workers(self):
         client = getattr(self.executor, "_client", None)
         if client is not None:
             with suppress(Exception):
@@ -95,6 +105,9 @@ class Given:
             if isinstance(number, int) and number > 0:
                 return number
         return os.cpu_count() or 1
+
+    def renew(self):
+        """Whoever opened it replaces lost workers."""
 
     def close(self):
         pass

@@ -189,7 +189,7 @@ def _controller():
 _blas = None
 
 
-def run_chunk(key, version, payload, cases, rows, attempt=0):
+def run_chunk(key, version, payload, cases, rows, attempt=None):
     """Entry of a worker.
 
     Parameters
@@ -202,7 +202,7 @@ def run_chunk(key, version, payload, cases, rows, attempt=0):
         The pickled `Payload`, or None where the worker should know it.
     cases : ndarray of int (m,)
     rows : ndarray (m, k)
-    attempt : int
+    attempt
         Makes the call another one for executors that remember calls.
 
     Returns
