@@ -3,6 +3,7 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ import pytest
 import railsym as rs
 from railsym import sweep
 from railsym.vehicle import SHIPPED
+import railsym.sweep.run_criteria  # noqa: F401
+import railsym.sweep.transient  # noqa: F401
 
 TEXT = """
 [study]
@@ -189,3 +192,14 @@ def test_results_in_xarray(tmp_path):
     data = study.run(tmp_path / "r.nc").to_xarray()
     assert data["speed"].attrs["units"] == "m/s" and data["contact.conicity"].values.tolist() == [0.2, 0.30000000000000004, 0.4]
     assert data["speed"].dims == ("case",) and data["status"].values.tolist() == ["done"] * 3
+
+
+def test_the_study_of_the_documentation(tmp_path):
+    page = (Path(__file__).parent.parent / "docs" / "studies_sweep.md").read_text()
+    (tmp_path / "study.toml").write_text(page.partition("```toml\n")[2].partition("```")[0])
+    study = sweep.Study.load(tmp_path / "study.toml")
+    assert study.size == 200 and study.set == {"car.mass": 38e3} and list(study.outputs) == ["speed", "frequency_hz"]
+    analyses = set(sweep.analysis.KINDS)
+    assert all(f"`{kind}`" in page for kind in analyses | set(sweep.plans.KINDS)) and all(f"{{ {kind} =" in page for kind in sweep.factors.KINDS)
+    for criterion in sweep.run_criteria.CRITERIA.values():
+        assert all(f"`{name}`" in page for name in criterion.outputs)
