@@ -135,3 +135,25 @@ def test_the_order_of_cases_does_not_matter(tmp_path):
     there = rs.Study("bogie", sweep.CriticalSpeed(), factors, sweep.Table(rows, scale="si")).run(tmp_path / "1.nc")
     back = rs.Study("bogie", sweep.CriticalSpeed(), factors, sweep.Table(rows[::-1], scale="si")).run(tmp_path / "2.nc")
     assert there["speed"].tolist() == back["speed"][::-1].tolist() and np.isfinite(there["speed"]).all()
+
+
+def test_tilt_runs_are_those_of_the_tilting_study(tmp_path):
+    from railsym.studies.tilt import make_scene
+
+    vehicle = rs.load_vehicle("pendolino_tilting").configured("AS_K")
+    track = rs.track.Track.curve(500.0, 60.0, transition=50.0, cant=0.1, before=30.0, after=50.0)
+    track.to_toml(tmp_path / "curve.toml")
+    analysis = sweep.Tilt(track=str(tmp_path / "curve.toml"), active=False)
+    results = run(tmp_path, "pendolino_tilting", analysis, {"speed": sweep.List([105.0], unit="km/h")}, configuration="AS_K")
+    passive = make_scene(vehicle, rs.track.load_track(tmp_path / "curve.toml"), 105.0 / 3.6).case("passive", "")
+    # one contact table made twice, one run twice: the same bits but for the spacing of the tape circles, which is computed here
+    assert results["ride.peak"][0] == pytest.approx(passive.ride[passive.worst]["peak"], rel=1e-6)
+    assert results["tilt.state"].tolist() == ["no control"] and np.isnan(results["tilt.delay"][0])
+    active = rs.Study("pendolino_tilting", sweep.Tilt(track=str(tmp_path / "curve.toml")), {"tilt.share": [0.3, 0.6]}, sweep.FullGrid(), configuration="AS_K")
+    results = active.run(tmp_path / "a.nc")
+    assert results["ride.peak"][1] < results["ride.peak"][0] < passive.ride[passive.worst]["peak"] and results["tilt.largest"][1] > results["tilt.largest"][0]
+
+
+def test_a_vehicle_that_does_not_tilt():
+    with pytest.raises(rs.errors.RailsymError, match="tilt"):
+        rs.Study("pendolino", sweep.Tilt(), {"speed": [30.0]}, sweep.FullGrid(), configuration="AS_K")

@@ -32,6 +32,7 @@ _MODULE_OF = {
     "Study": "study",
     "SweepError": "errors",
     "Table": "plans",
+    "Tilt": "tilt",
     "Transient": "transient",
     "Triangular": "factors",
     "Uniform": "factors",

@@ -16,6 +16,7 @@ KINDS = {
     "critical_speed": "railsym.sweep.critical_speed:CriticalSpeed",
     "damper_loop": "railsym.sweep.damper_loop:DamperLoop",
     "modes": "railsym.sweep.modes:Modes",
+    "tilt": "railsym.sweep.tilt:Tilt",
     "transient": "railsym.sweep.transient:Transient",
 }
 
