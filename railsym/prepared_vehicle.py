@@ -77,7 +77,7 @@ class PreparedVehicle:
         head, key, *_ = *name.split("."), ""
         layout = self.vehicle._layout
         if head in layout.elements:
-            return key in element_fields(layout.elements[head].type, layout.elements[head].mode)
+            return key != "lag" and key in element_fields(layout.elements[head].type, layout.elements[head].mode)  # a lag may make a state
         return key in _BODY_NUMBERS if head in layout.bodies else head == "contact"
 
     def _fill_tables(self, vehicle, touched):

@@ -10,6 +10,7 @@ from oracles.tilting_body import Balance
 import railsym as rs
 from railsym.conical_contact import Cone
 from railsym.errors import ConvergenceError, SimulationError, VehicleFileError
+from railsym.prepared_vehicle import PreparedVehicle
 from railsym.simulation import Controls, Simulation
 from railsym.tilt_linkage import TiltLinkage
 from railsym.track import Curve, Straight, Track, Transition
@@ -263,6 +264,17 @@ def test_a_rigid_mechanism_leaves_the_critical_speed():
     stiff = {"swing_link.stiffness": 1e10, "tilt_guide.stiffness.0": 1e10, "tilt_guide.rotational_stiffness.2": 1e10, "tilt_actuator.stiffness": 1e10}
     speeds = [rs.critical_speed(vehicle, conicity=[0.2]).speed[0] for vehicle in (rs.load_vehicle("pendolino"), VEHICLE.replace(stiff))]
     assert speeds[1] == pytest.approx(speeds[0], rel=0.008)  # the bolsters' own inertia about x and z is at their places
+
+
+@pytest.mark.parametrize("changes", [{"tilt_actuator.stiffness": 2e7, "swing_link.stiffness": 3e8}, {"tilt_actuator.lag": 0.1},
+                                     {"tilt_actuator.lag": 0.0, "tilt_actuator.rate_limit": np.inf}], ids=["stiffnesses", "lag", "no lag"])
+def test_cases_of_a_study_have_the_matrices_of_the_changed_vehicle(changes):
+    """Also where the jacks' states go: they follow at once then."""
+    contact = rs.LinearContact(conicity=0.2)
+    found, wanted = PreparedVehicle(VEHICLE).linear_model(changes, contact), rs.linear_model(VEHICLE.replace(changes), contact)
+    assert found.coordinates == wanted.coordinates and len(wanted.coordinates) == len(rs.linear_model(VEHICLE, contact).coordinates) - 4 * (0.0 in changes.values())
+    for name in ("stiffness", "damping_constant"):
+        np.testing.assert_allclose(getattr(found, name), getattr(wanted, name), atol=1e-12 * np.abs(getattr(wanted, name)).max(), rtol=0)
 
 
 def test_modes_tell_the_jacks_lag():
