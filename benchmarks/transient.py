@@ -20,7 +20,7 @@ from railsym._core_integrator import Integrator
 from railsym.contact import LinearContact
 from railsym.linear import RollingVehicle
 from railsym.model import Model
-from railsym.simulation import Simulation
+from railsym.simulation import Controls, Simulation
 
 STEP, SPEED = 1e-3, 60.0
 
@@ -103,6 +103,19 @@ def linear_contact():
     yield Figure("the same dense (NumPy)", 1e6 * dense, "us")
     operations, doubles = it.fill()
     yield Figure("block operations of a factorisation", operations, "", None, f"{8e-3 * doubles:.0f} kB of factors")
+
+
+def tilting():
+    """The same with the tilting mechanism, and what a controller in Python pays for what it asks."""
+    vehicle = rs.load_vehicle("pendolino_tilting")
+    model, bodies = rolling_model(vehicle)
+    yield Figure(f"step, {bodies} bodies with tilting jacks, linear contact", 1e6 * step_time(integrator(model)), "us", 7.0, "kept factors, dt = 1 ms")
+    controls, place = Controls(Simulation(vehicle, speed=SPEED, track=rs.Track.straight(100.0))), vehicle.body("bogie1").position
+    jack = "tilt_actuator.front_left"
+    for what, ask, note in (("inertial unit", lambda: controls.imu("bogie1", place), "no evaluation of forces"),
+                            ("length of a jack", lambda: controls.length(jack), "a further one; the first at a time evaluates all forces"),
+                            ("command to a jack", lambda: controls.command(jack, 0.01), "")):
+        yield Figure(f"controller in Python: {what}", 1e6 * least(ask, 1000), "us", 10.0, note)
 
 
 def growth():
@@ -191,6 +204,7 @@ def first_order(model):
 def transient_figures():
     """All figures of the integrator."""
     yield from linear_contact()
+    yield from tilting()
     yield from growth()
     yield from against_scipy()
     yield from table_contact()
