@@ -37,7 +37,8 @@ def add_curving(commands, typed, add_vehicle, add_output):
     command.add_argument("--dynamic", action="store_true", help="also run through every curve, with irregularities")
     command.add_argument("--irregularity", metavar="NAME", help="of --dynamic: spectrum (default erri_b176_low), or a CSV file of measured irregularities")
     command.add_argument("--seed", type=int, metavar="NUMBER", help="of --irregularity from a spectrum (default 1)")
-    command.add_argument("--length", type=typed(quantity, "m", "length"), default=250.0, metavar="LENGTH", help="of full curve that is judged (default 250m)")
+    command.add_argument("--length", type=typed(quantity, "m", "length"), default=250.0, metavar="LENGTH",
+                         help="of --dynamic: full curve that is judged (default 250m)")
     command.add_argument("--step", type=typed(quantity, "s", "step"), default=1e-3, metavar="TIME", help="of the integration (default 1ms)")
     add_output(command)
     return command

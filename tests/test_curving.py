@@ -186,6 +186,13 @@ def test_a_curve_without_equilibrium_is_told_and_the_rest_is_kept():
     assert data["quasi_static"]["Y"][0][1] == [None] * 4 and data["failures"][0]["radius"] == 12.0
 
 
+def test_a_run_that_derails_is_told_too():
+    found = rs.curving(BOGIE, radius=[1500.0, 100.0], cant=0.0, speed=12.0, contact=CONES, dynamic=True, length=40.0)
+    assert [(f.radius, f.analysis) for f in found.failures] == [(100.0, "quasi-static"), (100.0, "dynamic")]
+    assert "derailed (wheelset" in found.failures[1].reason and np.isfinite(found.largest["YQ"][0, 0]).all()
+    assert np.isnan(found.largest["YQ"][0, 1]).all() and "2 of 4 without result" in found.message
+
+
 def test_limits_are_those_of_the_criteria_and_recalled_ones_give_no_verdict(pendolino):
     by_name = {item.name: (item, where) for item, where in pendolino.assessed()}
     ratio, where = by_name["Y/Q quasi-static"]

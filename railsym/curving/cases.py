@@ -29,6 +29,8 @@ class Cases:
         m/s, m.
     by : {"speed", "cant_deficiency"}
         Which of the two was given.
+    gravity : float
+        m/s^2
     """
 
     radius: np.ndarray
@@ -36,13 +38,12 @@ class Cases:
     speed: np.ndarray
     cant_deficiency: np.ndarray
     by: str
+    gravity: float
 
     @property
     def lateral_acceleration(self):
         """a_nc in the track plane, m/s^2, to the outside of the curve, shape (m, n)."""
-        return self.cant_deficiency / RAIL_SPACING * self._gravity
-
-    _gravity: float = 9.81
+        return self.cant_deficiency / RAIL_SPACING * self.gravity
 
 
 def cases(radius, cant, speed, cant_deficiency, gravity):

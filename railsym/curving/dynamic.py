@@ -86,7 +86,8 @@ def _judged(vehicle, wheels, asked, j, k, passage, wheelsets):
     start = -max(body.position[0] for body in vehicle.bodies)
     names = [f"{wheel}.{name}" for wheel in wheel_names(wheelsets) for name in ("Y", "Q", "t_gamma")]
     names += [f"{wheelset}.{name}" for wheelset in wheelsets for name in ("sum_Y", "angle_of_attack")]
-    run = simulate(vehicle, speed=speed, duration=(last - start) / speed, track=track, contact=wheels, channels=["s", "V", *names], rate=_RATE, dt=passage.dt)
+    run = simulate(vehicle, speed=speed, duration=(last - start) / speed, track=track, contact=wheels, channels=["s", "V", *names], rate=_RATE,
+                   dt=passage.dt)
     if run.status != "completed":
         raise SimulationError(run.message)
     judged = run.between((first - start) / speed, (last - start) / speed)

@@ -110,6 +110,7 @@ def row_text(found, row):
 
 def _heading(found):
     name = f"{found.vehicle}, {found.configuration}" if found.configuration else found.vehicle
-    cant = f"cant {1e3 * found.cant.min():.4g} mm" if np.ptp(found.cant) == 0.0 else f"cant {1e3 * found.cant.min():.4g} to {1e3 * found.cant.max():.4g} mm"
+    low, high = 1e3 * found.cant.min(), 1e3 * found.cant.max()
+    cant = f"cant {low:.4g} mm" if low == high else f"cant {low:.4g} to {high:.4g} mm"
     rows = f", {row_text(found, 0)}" if len(found.speed) == 1 else ""
     return f"{name}: curves to the {found.direction}, {cant}{rows}; {found.contact}, {found.law}"

@@ -98,8 +98,8 @@ def _cant_sign(name, s, curvature, cant, positive):
     lost = (np.abs(s - s[nearest]) > _NEAR) & (np.abs(cant) > _LEVEL)
     if lost.any():
         k = int(np.argmax(lost))
-        raise TrackError(f"{name}: cant {1e3 * cant[k]:.4g} mm at s = {s[k]:.6g} m, {abs(s[k] - s[nearest[k]]):.4g} m from the nearest curve, where the line has no "
-                         f"outer rail: {_SIGN}")
+        raise TrackError(f"{name}: cant {1e3 * cant[k]:.4g} mm at s = {s[k]:.6g} m, {abs(s[k] - s[nearest[k]]):.4g} m from the nearest curve, where the "
+                         f"line has no outer rail: {_SIGN}")
     return np.sign(np.where(np.abs(curvature) >= 0.1 * _STRAIGHT, curvature, curvature[nearest]))
 
 
@@ -110,5 +110,5 @@ def _check_gaps(name, s, largest, interpolation):
     allowed = _GAP * float(np.median(gaps)) if largest is None else number(largest, f"{name}: largest_gap", "m", above=0.0)
     k = int(gaps.argmax())
     if gaps[k] > allowed:
-        raise TrackError(f"{name}: a gap of {gaps[k]:.6g} m between s = {s[k]:.6g} and {s[k + 1]:.6g} m, where points are {np.median(gaps):.4g} m apart: fill it, "
-                         f"or allow it (largest_gap={np.ceil(gaps[k]):g}); main points of a plan need interpolation=\"linear\"")
+        raise TrackError(f"{name}: a gap of {gaps[k]:.6g} m between s = {s[k]:.6g} and {s[k + 1]:.6g} m, where points are {np.median(gaps):.4g} m "
+                         f"apart: fill it, or allow it (largest_gap={np.ceil(gaps[k]):g}); main points of a plan need interpolation=\"linear\"")

@@ -150,5 +150,6 @@ def _check_units(geometry):
     ahead = np.interp(np.minimum(s + 1000.0, s[-1]), s, turned)
     turns = np.abs(ahead - turned) / (2.0 * np.pi)
     if turns.max() > _MOST_TURNS:
-        raise TrackError(f"{name}: within a kilometre from s = {s[int(turns.argmax())]:.6g} m on it turns {turns.max():.3g} times round; is the unit of curvature right?")
+        raise TrackError(f"{name}: within a kilometre from s = {s[int(turns.argmax())]:.6g} m on it turns {turns.max():.3g} times round; is the unit of "
+                         "curvature right?")
 
