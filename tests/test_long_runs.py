@@ -200,3 +200,13 @@ def test_static_wheel_loads_come_with_a_run():
     assert list(loads) == ["wheelset1.left", "wheelset1.right", "wheelset2.left", "wheelset2.right"] and sum(loads.values()) == pytest.approx(weight, rel=1e-6)
     judged = rs.criteria.derailment(found)
     assert judged.wheel_load == loads and not any("medians" in note for note in judged.notes)
+
+
+def test_an_unfinished_file_is_read_too(tmp_path):
+    """What a killed program left: counted samples, called interrupted."""
+    writer = rs.ChannelWriter(tmp_path / "run.nc", [Channel("car.y", "m"), Channel("s", "m")])
+    writer.write([0.0, 1.0, 2.0], np.arange(6.0).reshape(3, 2))
+    writer.flush()
+    found = rs.Run.from_netcdf(tmp_path / "run.nc.part", lazy=True)
+    np.testing.assert_array_equal(found["s"], [1.0, 3.0, 5.0])
+    assert found.status == "interrupted" and len(found) == 3 and len(found.select("s").channels) == 1
