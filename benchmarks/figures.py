@@ -17,6 +17,7 @@ from benchmarks.long_run import long_run_figures
 from benchmarks.measure import Figure, cost_of_code, median_time, printed_by
 from benchmarks.wheel_rail import wheel_rail_figures
 from benchmarks.sweep import sweep_figures
+from benchmarks.tilt import tilt_figures
 from benchmarks.track import track_figures
 from benchmarks.transient import transient_figures
 
@@ -180,4 +181,4 @@ def _bench_records(model):
 GROUPS = {"derive": derivation, "import": imports, "linearise": linearisation, "figures": stability_figures, "cases": cases_figures,
           "sensitivity": sensitivities, "creep": creep_figures, "dampers": damper_figures, "contact": contact_figures, "track": track_figures,
           "wheel_rail": wheel_rail_figures, "transient": transient_figures, "long_run": long_run_figures, "curving": curving_figures,
-          "sweep": sweep_figures}
+          "sweep": sweep_figures, "tilt": tilt_figures}
