@@ -259,11 +259,22 @@ int rs_integrator_sample(rs_integrator *it, double *row)
 	return status;
 }
 
+void rs_integrator_watcher(rs_integrator *it, rs_controller watcher, void *context)
+{
+	it->watcher = watcher;
+	it->watched = context;
+}
+
 static int controlled(rs_integrator *it)
 {
-	if (!it->controller || it->report.steps % it->every)
+	int due = it->controller && it->report.steps % it->every == 0;
+	if (!due && !it->watcher)
 		return RS_OK;
 	rs_integrator_at_end(it, it->sample_u, it->sample_a);
+	if (it->watcher && it->watcher(it->watched, it->report.time, it->q, it->sample_u, it->sample_a))
+		return RS_STOPPED;
+	if (!due)
+		return RS_OK;
 	if (it->controller(it->context, it->report.time, it->q, it->sample_u, it->sample_a))
 		return RS_STOPPED;
 	rs_integrator_follow(it);

@@ -34,6 +34,7 @@
  *   Given     time       count, s, increasing
  * rs_integrator_channels what a sample holds; replaces those before. Elements in the order of kernels and instances
  * rs_integrator_controller   called before every `every`-th step; a return other than 0 stops the run (RS_STOPPED)
+ * rs_integrator_watcher  called before every step, ahead of the controller: it sees the state and changes nothing that acts on the vehicle
  * rs_integrator_run      steps with samples after every `every`-th step, counted from the start
  *   Returned  samples    rows x channels
  *             sampled    rows written; also after a failure
@@ -90,8 +91,8 @@ struct rs_integrator {
 	rs_channel *channel;
 	int channels, looks;       /* looks: 1 where a sample needs the residual */
 	double *sample_u, *sample_a;  /* n */
-	rs_controller controller;
-	void *context;
+	rs_controller controller, watcher;
+	void *context, *watched;
 	int every;                 /* steps between calls of the controller */
 	rs_run_report report;
 };

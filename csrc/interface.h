@@ -321,6 +321,7 @@ double *rs_integrator_force(rs_integrator *integrator);
 int rs_integrator_kinks(rs_integrator *integrator, int count, const double *time);
 int rs_integrator_channels(rs_integrator *integrator, int count, const rs_channel *channel);
 void rs_integrator_controller(rs_integrator *integrator, rs_controller controller, void *context, int every);
+void rs_integrator_watcher(rs_integrator *integrator, rs_controller watcher, void *context);
 int rs_integrator_restart(rs_integrator *integrator);
 void rs_integrator_follow(rs_integrator *integrator);
 int rs_integrator_look(rs_integrator *integrator);

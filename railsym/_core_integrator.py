@@ -104,6 +104,11 @@ class Integrator:
         self._callback, self._context, self.why = function, context, why
         lib.rs_integrator_controller(self._pointer, ffi.NULL if function is None else function, context, every)
 
+    def set_watcher(self, function, context=ffi.NULL):
+        """A C function (as for `set_controller`) called before every step, which sees and changes nothing; None takes it away."""
+        self._watcher, self._watched = function, context
+        lib.rs_integrator_watcher(self._pointer, ffi.NULL if function is None else function, context)
+
     def set_travel(self, travel):
         """A `Travel` that moves the track frames, or None."""
         self._travel = travel

@@ -18,10 +18,11 @@
  *
  * rs_tilt_unit_create         sensors, a law and the commands of actuators on an integrator; NULL without memory or where a place in
  *                             the setup lies outside the model. Everything that the setup points to is kept by the caller.
- * rs_tilt_unit_hook           an rs_controller with the unit as context, before every step: sensors, and at its samples the law
+ * rs_tilt_unit_watch          a watcher of the integrator, with the unit as context: sensors
+ * rs_tilt_unit_control        an rs_controller at the unit's samples, for a law in C
  * rs_tilt_unit_read           sensors at the present state, a row of RS_TILT_SIGNALS
  *   Status    RS_OK; of the track; RS_TILT_NO_NOISE: the random numbers are used up
- * rs_tilt_unit_command        the tilt angle (rad) that the actuators' lengths are commanded to
+ * rs_tilt_unit_command        the tilt angle (rad) of this sample: the set point of the actuators runs straight to it from the last one
  * rs_tilt_unit_log            rows written since it was asked last: time, signals, outputs; the next rows begin at the first again
  * rs_tilt_unit_noise          random numbers of the next samples, rows of RS_TILT_NOISY
  * rs_tilt_unit_answer         what the law answered to the last sample: status, command

@@ -50,7 +50,8 @@ typedef struct rs_tilt_unit rs_tilt_unit;
 
 rs_tilt_unit *rs_tilt_unit_create(rs_integrator *integrator, const rs_tilt_setup *setup, int rows);
 void rs_tilt_unit_free(rs_tilt_unit *unit);
-int rs_tilt_unit_hook(void *unit, double time, const double *q, const double *u, const double *a);
+int rs_tilt_unit_watch(void *unit, double time, const double *q, const double *u, const double *a);
+int rs_tilt_unit_control(void *unit, double time, const double *q, const double *u, const double *a);
 int rs_tilt_unit_read(rs_tilt_unit *unit, double *signal);
 void rs_tilt_unit_command(rs_tilt_unit *unit, double angle);
 int rs_tilt_unit_log(rs_tilt_unit *unit, double *rows);

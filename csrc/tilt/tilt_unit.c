@@ -17,7 +17,8 @@ struct rs_tilt_unit {
 	double *q;                    /* 3 n, room for a state */
 	long long seen;               /* step that the filters have seen; -1: none */
 	double filter[RS_TILT_NOISY][2], filtered[RS_TILT_NOISY], last[RS_TILT_SIGNALS];
-	double place, V;
+	double place, V, twist;
+	double from, to;              /* rad, the last two commands */
 	const double *noise;
 	int noises, next_noise;
 	double *log;
@@ -80,6 +81,22 @@ static int frame_at(const rs_tilt_unit *unit, double ahead, double dV, rs_tilt_f
 	return RS_OK;
 }
 
+/* Cant under the body less that under its bolsters, rad: it changes so slowly that it is looked up once a sample. */
+static int twist(rs_tilt_unit *unit)
+{
+	const rs_tilt_setup *s = &unit->setup;
+	double cant, below = 0.0;
+	int status = RS_OK;
+	for (int k = 0; k < s->bolsters && !status; k++) {
+		status = frame_at(unit, s->bolster_ahead[k], 0.0, NULL, &cant);
+		below += cant / s->bolsters;
+	}
+	if (!status)
+		status = frame_at(unit, s->car_ahead, 0.0, NULL, &cant);
+	unit->twist = cant - below;
+	return status;
+}
+
 /* Gyroscope, accelerometers and tilt as they truly are. */
 static int truth(rs_tilt_unit *unit, double time, const double *q, const double *u, const double *a, double *value)
 {
@@ -92,13 +109,11 @@ static int truth(rs_tilt_unit *unit, double time, const double *q, const double 
 	if (status)
 		return status;
 	rs_tilt_motion(q + s->bogie, u + s->bogie, a + s->bogie, s->offset, s->arm, &frame, value);
-	for (int k = 0; k < s->bolsters && !status; k++) {
-		status = frame_at(unit, s->bolster_ahead[k], dV, NULL, &cant);
-		below += (q[s->bolster_roll[k]] + cant) / s->bolsters;
-	}
-	if (!status)
-		status = frame_at(unit, s->car_ahead, dV, NULL, &cant);
-	value[4] = q[s->car_roll] + cant - below;
+	for (int k = 0; k < s->bolsters; k++)
+		below += q[s->bolster_roll[k]] / s->bolsters;
+	if (unit->integrator->report.steps % s->every == 0)
+		status = twist(unit);
+	value[4] = q[s->car_roll] - below + unit->twist;
 	return status;
 }
 
@@ -165,9 +180,11 @@ int rs_tilt_unit_read(rs_tilt_unit *unit, double *signal)
 	return status ? status : sample(unit, time, signal);
 }
 
-void rs_tilt_unit_command(rs_tilt_unit *unit, double angle)
+/* The set point of the step that begins: in its middle, on the straight line from the last command to this one. */
+static void set_point(rs_tilt_unit *unit)
 {
 	const rs_tilt_setup *s = &unit->setup;
+	double part = ((double)(unit->integrator->report.steps % s->every) + 0.5) / s->every, angle = unit->from + part * (unit->to - unit->from);
 	for (int k = 0; k < s->actuators; k++) {
 		const double *c = s->length + RS_TILT_POWERS * k;
 		double length = c[RS_TILT_POWERS - 1];
@@ -177,12 +194,27 @@ void rs_tilt_unit_command(rs_tilt_unit *unit, double angle)
 	}
 }
 
-int rs_tilt_unit_hook(void *context, double time, const double *q, const double *u, const double *a)
+void rs_tilt_unit_command(rs_tilt_unit *unit, double angle)
+{
+	unit->from = unit->to;
+	unit->to = angle;
+	set_point(unit);
+}
+
+int rs_tilt_unit_watch(void *context, double time, const double *q, const double *u, const double *a)
+{
+	rs_tilt_unit *unit = context;
+	unit->answer = sense(unit, time, q, u, a);
+	set_point(unit);
+	return unit->answer;
+}
+
+int rs_tilt_unit_control(void *context, double time, const double *q, const double *u, const double *a)
 {
 	rs_tilt_unit *unit = context;
 	const rs_tilt_setup *s = &unit->setup;
 	unit->answer = sense(unit, time, q, u, a);
-	if (unit->answer || !s->law || unit->integrator->report.steps % s->every)
+	if (unit->answer)
 		return unit->answer;
 	double *row = unit->log + (size_t)(unit->logged < unit->rows ? unit->logged : 0) * RS_TILT_ROW;
 	row[0] = time;

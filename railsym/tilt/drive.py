@@ -12,6 +12,7 @@ from railsym.tilt.errors import TiltError
 POWERS = 6           # of the polynomials, 0 to 5
 _ANGLES = 33
 _LARGEST = np.radians(10.0)
+_ITERATIONS = 12
 _FIT = 2e-5          # m, that a polynomial may miss
 
 
@@ -82,39 +83,37 @@ def _arms(element, car):
     return points if element.second.body == car else points[::-1]
 
 
-def _moved(point, pose, pivot):
-    y, z, angle = pose
-    c, s = np.cos(angle), np.sin(angle)
-    return pivot + [y, z] + np.array([[c, -s], [s, c]]) @ (point - pivot)
+def _moved(points, poses, pivot):
+    """Points of the body (k, 2) at poses (n, 3), ndarray (n, k, 2)."""
+    c, s = np.cos(poses[:, 2])[:, None], np.sin(poses[:, 2])[:, None]
+    y, z = (np.atleast_2d(points) - pivot).T
+    return pivot + poses[:, None, :2] + np.stack([c * y - s * z, s * y + c * z], axis=-1)
 
 
 def _poses(vehicle, car, bolster):
-    """Rows y z angle of the body against the bolster, for tilt angles either way, at which all links keep their lengths."""
-    from scipy.optimize import least_squares
-
+    """Rows y z angle of the body against the bolster, for tilt angles to one side, at which all links keep their lengths (Gauss-Newton)."""
     links = [_arms(e, car) for e in vehicle.elements if e.type == "traction_rod" and {e.first.body, e.second.body} == {car, bolster}]
     if len(links) < 2:
         raise TiltError(f"vehicle {vehicle.name!r}: {len(links)} links (traction_rod) join {car} and {bolster}; a body is led by two at least")
-    pivot = vehicle.body(car).position[1:]
-    long = [np.linalg.norm(up - down) for up, down in links]
-    poses, guess = [], np.zeros(2)
-    for angle in np.linspace(0.0, _LARGEST, _ANGLES):
-        def off(place, angle=angle):
-            return [np.linalg.norm(_moved(down, (*place, angle), pivot) - up) - l for (up, down), l in zip(links, long)]
-
-        found = least_squares(off, guess, xtol=1e-15, ftol=1e-15, gtol=1e-15)
-        if np.abs(found.fun).max() > 1e-3:
-            raise TiltError(f"the links between {car} and {bolster} do not let it tilt by {np.degrees(angle):.3g} degrees")
-        guess = found.x
-        poses.append((*guess, angle))
-    return np.array(poses)
+    up, down = (np.array(points) for points in zip(*links))
+    pivot, long = vehicle.body(car).position[1:], np.linalg.norm(up - down, axis=1)
+    poses = np.column_stack([np.zeros((_ANGLES, 2)), np.linspace(0.0, _LARGEST, _ANGLES)])
+    for _ in range(_ITERATIONS):
+        reach = _moved(down, poses, pivot) - up
+        length = np.linalg.norm(reach, axis=-1)
+        slopes = reach / length[..., None]
+        poses[:, :2] -= (np.linalg.pinv(slopes) @ (length - long)[..., None])[..., 0]
+    off = np.abs(np.linalg.norm(_moved(down, poses, pivot) - up, axis=-1) - long).max(axis=1)
+    if not (off < 1e-3).all():
+        raise TiltError(f"the links between {car} and {bolster} do not let it tilt by {np.degrees(poses[int(np.argmax(~(off < 1e-3))), 2]):.3g} degrees")
+    return poses
 
 
 def _lengths(vehicle, jack, car, poses):
     fixed, moved = _arms(jack, car)
     pivot = vehicle.body(car).position[1:]
     both = np.concatenate([poses, poses[1:] * [-1.0, 1.0, -1.0]])
-    length = np.array([np.linalg.norm(_moved(moved, pose, pivot) - fixed) for pose in both]) - np.linalg.norm(moved - fixed)
+    length = np.linalg.norm(_moved(moved, both, pivot)[:, 0] - fixed, axis=-1) - np.linalg.norm(moved - fixed)
     angles = both[:, 2:] ** np.arange(1, POWERS)
     found = np.linalg.lstsq(angles, length, rcond=None)[0]
     if np.abs(angles @ found - length).max() > _FIT:

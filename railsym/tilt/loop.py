@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The control loop where nothing limits: plant from the linear model, step response, bandwidth, margins.
 
-    plant      x' = A x + B command,  tilt = C x        linear model of the vehicle with the actuators' lag
+    plant      x' = A x + B set point,  tilt = C x      linear model of the vehicle with the actuators' lag
+    set point  runs straight from one command to the next within a period
     servo      u = demand + kp e + i + d,  e = y - tilt  (railsym.tilt.servo without its limits, as matrices)
-    loop       L(z) = z^-n (kp + ki T/(z - 1) + D(z)) P(z),  P held over a period (SciPy, zero-order hold)
+    loop       L(z) = z^-n (kp + ki T/(z - 1) + D(z)) P(z),  P from sample to sample (SciPy)
 """
 
 from __future__ import annotations
@@ -111,12 +112,16 @@ class TiltLoop:
 
     @cached_property
     def held_plant(self):
-        """(A, B) of the plant held over a period, for sample to sample."""
+        """(A, B, C) from sample to sample: states x and the set point; input the command, which the set point reaches in a period."""
         from scipy.signal import cont2discrete
 
-        n = len(self.B)
-        Ad, Bd, *_ = cont2discrete((self.A, self.B[:, None], self.C[None], np.zeros((1, 1))), self.parameters.period)
-        return Ad.reshape(n, n), Bd[:, 0]
+        n, T = len(self.B), self.parameters.period
+        A = np.zeros((n + 1, n + 1))
+        A[:n, :n], A[:n, n] = self.A, self.B
+        C, slope = np.append(self.C, 0.0), np.eye(n + 1)[n]
+        Ad, Bd, *_ = cont2discrete((A, slope[:, None], C[None], np.zeros((1, 1))), T)
+        per_command = Bd[:, 0] / T
+        return Ad - np.outer(per_command, slope), per_command, C
 
     def open_loop(self, frequency):
         """L at frequencies (Hz)."""
@@ -125,7 +130,10 @@ class TiltLoop:
 
     @cached_property
     def _held_partial(self):
-        return partial_fractions(*self.held_plant, self.C)
+        A, B, _ = self.held_plant
+        n = len(self.B)
+        moving, standing = (partial_fractions(A[:n, :n], part, self.C) for part in (B[:n], A[:n, n]))
+        return lambda z: moving(z) + standing(z) / z
 
     def margins(self):
         """`Margins` of the loop."""
@@ -136,7 +144,7 @@ class TiltLoop:
         """Discrete system (scipy.signal.dlti): demand (rad) to tilt and command (rad)."""
         from scipy.signal import dlti
 
-        return dlti(*closed_loop(self.parameters, *self.held_plant, self.C), dt=self.parameters.period)
+        return dlti(*closed_loop(self.parameters, *self.held_plant), dt=self.parameters.period)
 
     def step(self, duration=5.0, size=1.0):
         """Times (s), tilt and command for a step of the demand (rad), by SciPy's dlsim."""

@@ -38,7 +38,10 @@ class Plant:
         if made == ffi.NULL:
             raise TiltError("the tilt unit cannot be made: more than four bolsters, or no memory")
         self._core = ffi.gc(made, lib.rs_tilt_unit_free)
-        integrator.set_controller(ffi.addressof(lib, "rs_tilt_unit_hook"), 1, self._core, why=self.why)
+        integrator.set_watcher(ffi.addressof(lib, "rs_tilt_unit_watch"), self._core)
+        control = ffi.addressof(lib, "rs_tilt_unit_control") if unit.compiled else None
+        integrator.set_controller(control, setup.every, self._core, why=self.why)
+        self._integrator = integrator
 
     def _setup(self, simulation, unit):
         parts, drive = simulation.parts, unit.drive or TiltDrive.of(simulation.parts.vehicle)
@@ -110,6 +113,7 @@ class Plant:
     def command(self, angle):
         """Command the actuators to a tilt angle (rad)."""
         lib.rs_tilt_unit_command(self._core, angle)
+        self._integrator.follow()
 
     def log(self):
         """Rows that the law in C has left, (n, 20)."""
