@@ -16,7 +16,7 @@ from railsym.studies.quasi_linear import mean_wheel_load
 from railsym.studies.switch import default_pair
 from railsym.studies.tilt_case import Scene, TiltCase
 from railsym.tilt import CompiledController, Controller, LeadingSignals, SensorSet, TiltDrive, TiltError, TiltLoop, TiltParameters, TiltUnit, TrackDatabase
-from railsym.tilt.plant import leading_frame
+from railsym.tilt.plant import leading_frame, steps_between
 
 SPEED = 105.0 / 3.6        # m/s, the paper
 COACH = 25.9               # m, of a coach over its couplers (assumed: usual for the class): the leading vehicle's distance
@@ -110,6 +110,7 @@ def tilt_study(vehicle, track=None, *, speed=SPEED, pair=None, parameters=None, 
     from railsym.studies.tilt_report import DETECTION, LEADING
 
     p, sensors = parameters or TiltParameters(), sensors or SensorSet()
+    steps_between(p.rate, dt)
     p = p.with_(sensor_delay=sensors.yaw_rate.delay) if parameters is None else p
     scene = make_scene(vehicle, track, speed, pair, {"law": law, "grid": grid, "dt": dt} | ({} if friction is None else {"friction": friction}), channels)
     make = CompiledController if compiled else Controller

@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from railsym.studies import tilt_figures as figures
+from railsym.tilt.errors import TiltError
 from railsym.tilt.faults import State
 
 FLOOR = -1.2               # m, height of the floor (assumed)
 PLACES = {"front": (9.5, 0.0, FLOOR), "middle": (0.0, 0.0, FLOOR), "rear": (-9.5, 0.0, FLOOR), "seat": (0.0, 0.9, -1.7)}
+_LEAST = 5.0               # s, of a run that is worth reading
 _TAIL = 12.0               # m, of the vehicle behind its middle and before the end of the track
 
 
@@ -72,7 +74,7 @@ class TiltCase:
         return State(self.state).name.lower()
 
 
-def markers(vehicle, car, seat=None):
+def markers(car):
     """Points on the car's floor above both bogies and in the middle, and a seat, for ``rs.simulate``."""
     return {name: (car, list(point)) for name, point in PLACES.items()}
 
@@ -135,8 +137,10 @@ class Scene:
 
         control = [] if unit is None else [unit.controller]
         run = simulate(vehicle or self.vehicle, speed=self.speed, duration=duration or self.duration, track=self.track, contact=self.contact,
-                       channels=[*channels(self.drive, self.frame), *self.extra], markers=markers(self.vehicle, self.drive.car), controllers=[*also, *control],
+                       channels=[*channels(self.drive, self.frame), *self.extra], markers=markers(self.drive.car), controllers=[*also, *control],
                        progress=progress, **self.options)
+        if run.status != "completed" and run.time[-1] < _LEAST:
+            raise TiltError(f"case {name}: {run.message}")
         return self.read(name, text, run, unit, share, limit, passive)
 
     @property

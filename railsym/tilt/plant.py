@@ -45,11 +45,8 @@ class Plant:
 
     def _setup(self, simulation, unit):
         parts, drive = simulation.parts, unit.drive or TiltDrive.of(simulation.parts.vehicle)
-        every = 1.0 / (unit.rate * simulation.dt)
-        if abs(every - round(every)) > 1e-6 * every:
-            raise TiltError(f"controller rate {unit.rate:g} Hz: its period must be a whole number of steps of {simulation.dt:g} s")
         setup = ffi.new("rs_tilt_setup *")
-        setup.every, setup.limit, setup.gravity = round(every), unit.limit, parts.vehicle.gravity
+        setup.every, setup.limit, setup.gravity = steps_between(unit.rate, simulation.dt), unit.limit, parts.vehicle.gravity
         setup.start, setup.speed = float(parts.speed.place(0.0)), float(parts.speed.at(0.0))
         self._bodies(setup, parts, drive, unit.sensors)
         self._sensors(setup, unit, simulation.dt)
@@ -134,6 +131,20 @@ class Plant:
         if answer == lib.RS_OUT_OF_TRACK:
             return ControllerError(f"tilt unit: a sensor is beyond the end of the track at t = {time:.6g} s; lengthen the track or shorten the run")
         return ControllerError(f"controller {name}: it stopped the run at t = {time:.6g} s with status {answer}")
+
+
+def steps_between(rate, dt):
+    """Steps (of dt, s) between samples at a rate (Hz).
+
+    Raises
+    ------
+    TiltError
+        No whole number.
+    """
+    every = 1.0 / (rate * dt)
+    if every < 0.999 or abs(every - round(every)) > 1e-6 * every:
+        raise TiltError(f"controller rate {rate:g} Hz: its period must be a whole number of steps of {dt:g} s")
+    return round(every)
 
 
 def leading_frame(vehicle):
