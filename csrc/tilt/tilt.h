@@ -67,7 +67,7 @@ struct rs_tilt_controller {
 	rs_tilt_detector detector;
 	rs_tilt_places places;
 	rs_tilt_servo servo;
-	double filter[4][2];
+	double filter[4][2], smooth[2];
 	int faults, state, off, strayed;
 	double complementary, yaw_before, demand;
 };

@@ -74,7 +74,7 @@ static double source(rs_tilt_controller *c, double own, double deficiency, doubl
 		c->off = fabs(here - deficiency) > k->database_tolerance ? c->off + 1 : 0;
 		if (c->off >= k->confirm)
 			c->faults |= RS_TILT_DATABASE;
-		return rs_tilt_table(&c->places, k->gravity, place + speed * k->lead, speed);
+		return rs_tilt_low_pass(k->lateral, c->smooth, rs_tilt_table(&c->places, k->gravity, place + speed * k->lead, speed));
 	}
 	return own;
 }

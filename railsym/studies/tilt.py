@@ -149,8 +149,13 @@ def make_scene(vehicle, track=None, speed=SPEED, pair=None, options=None, channe
 
 
 def by_place(parameters):
-    """The parameters with a database, called early by latency and the reference model's lag."""
-    return parameters.with_(source="database", lead=parameters.latency + parameters.follow_delay)
+    """The parameters with a database, called early by the delays of filter, latency and reference model."""
+    return parameters.with_(source="database", lead=_late(parameters))
+
+
+def _late(parameters):
+    """s, from a low-passed acceleration to the tilt that follows it."""
+    return parameters.filter_delay(parameters.lateral_cutoff) + parameters.latency + parameters.follow_delay
 
 
 def detecting(parameters):
@@ -163,8 +168,7 @@ def detecting(parameters):
 
 def behind(parameters, distance):
     """The parameters with sensors of a vehicle ``distance`` m ahead: called early by the filter's delay too."""
-    late = parameters.filter_delay(parameters.lateral_cutoff) + parameters.latency + parameters.follow_delay
-    return parameters.with_(source="leading", ahead=distance + parameters.ahead, lead=late)
+    return parameters.with_(source="leading", ahead=distance + parameters.ahead, lead=_late(parameters))
 
 
 def _leading_unit(scene, parameters, sensors, coach, speed):

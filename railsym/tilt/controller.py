@@ -56,6 +56,7 @@ class Controller:
         self.channels, self.vote, self.detector, self.servo = Channels(k), Vote(k), CurveDetector(k), Servo(k)
         self.buffer, self.table = PlaceBuffer(), None if self.database is None else TableReader(self.database, k.gravity)
         self.filters = [LowPass(coefficients) for coefficients in (k.gyro, k.gyro, k.lateral, k.lateral)]
+        self.smooth = LowPass(k.lateral)
         self.faults, self.state = 0, int(State.NORMAL)
         self.complementary = self.yaw_before = self.demand = 0.0
         self.off, self.strayed = 0, 0
@@ -111,7 +112,7 @@ class Controller:
             self.off = self.off + 1 if off else 0
             if self.off >= k.confirm:
                 self.faults |= _DATABASE
-            return self.table.look(place + speed * k.lead, speed)
+            return self.smooth.step(self.table.look(place + speed * k.lead, speed))
         return own
 
     def _watch_actuator(self, error):

@@ -46,7 +46,7 @@ class TiltParameters:
         s, below which the complementary estimate follows the gyroscope.
     source : str
         Of the demand: ``"own"`` sensors; ``"leading"``: sensors ``ahead`` m ahead of the vehicle's middle, used when it comes there;
-        ``"database"``: cant deficiency by place.
+        ``"database"``: cant deficiency by place, through the same low-pass as the accelerometers.
     ahead, lead : float
         m, of the sensors ahead of the vehicle's middle; s, by which a demand by place is called early, for the lags that follow.
     curve_on, curve_off, roll_on, roll_off, lateral_on, lateral_off : float
