@@ -13,6 +13,7 @@ from benchmarks.cases import cases_figures
 from benchmarks.contact import contact_figures
 from benchmarks.creep import creep_figures
 from benchmarks.curving import curving_figures
+from benchmarks.kernels import kernel_figures
 from benchmarks.long_run import long_run_figures
 from benchmarks.measure import Figure, cost_of_code, median_time, printed_by
 from benchmarks.wheel_rail import wheel_rail_figures
@@ -178,7 +179,7 @@ def _bench_records(model):
     return found
 
 
-GROUPS = {"derive": derivation, "import": imports, "linearise": linearisation, "figures": stability_figures, "cases": cases_figures,
+GROUPS = {"derive": derivation, "kernels": kernel_figures, "import": imports, "linearise": linearisation, "figures": stability_figures, "cases": cases_figures,
           "sensitivity": sensitivities, "creep": creep_figures, "dampers": damper_figures, "contact": contact_figures, "track": track_figures,
           "wheel_rail": wheel_rail_figures, "transient": transient_figures, "long_run": long_run_figures, "curving": curving_figures,
           "sweep": sweep_figures, "tilt": tilt_figures}
