@@ -209,7 +209,7 @@ def _commanded(balance, simulation, x, commands):
     while at < 1.0:
         step = min(step, 1.0 - at)
         guess = x + step * slope
-        simulation.command({name: (at + step) * value for name, value in commands.items()}, guess)
+        simulation._command({name: (at + step) * value for name, value in commands.items()}, guess)
         found = balance.solve(0.0, guess)
         if found is None:
             step *= 0.5

@@ -86,7 +86,7 @@ class Simulation:
         integrator = self.parts.integrator
         integrator.set_channels(self.recorder.raw)
         q, u = self.parts.start(initial)
-        self.command(commands or {}, q)
+        self._command(commands or {}, q)
         self._planned = _planned(faults, dt, Controls(self))
         status = integrator.start(0.0, q, u)
         row, sampled = integrator.sample()
@@ -97,7 +97,7 @@ class Simulation:
         self._waiting_samples = 0
         self._file = None  # the run's file, where samples are not kept in memory
 
-    def command(self, commands, q):
+    def _command(self, commands, q):
         """Set commands of actuators, dict of m or N, and in the coordinates q (n,) the states of those that have followed them."""
         controls, internal = Controls(self), self.parts.model.topology.internal
         for element, value in commands.items():
