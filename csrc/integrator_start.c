@@ -47,6 +47,17 @@ static double followed(const rs_law *law, double s)
 	return -at.g / at.g_w;
 }
 
+/* 1 where a law has the command and fault that it had when it was last asked. */
+static int as_before(const rs_law *law)
+{
+	if (!law->seen)
+		return 0;
+	int same = law->seen[RS_FOLLOWED_COMMAND] == law->command && law->seen[RS_FOLLOWED_FAULT] == law->fault;
+	law->seen[RS_FOLLOWED_COMMAND] = law->command;
+	law->seen[RS_FOLLOWED_FAULT] = law->fault;
+	return same;
+}
+
 void rs_integrator_follow(rs_integrator *it)
 {
 	for (int kernel = 0; kernel < rs_kernel_count(); kernel++) {
@@ -54,7 +65,7 @@ void rs_integrator_follow(rs_integrator *it)
 		int size = rs_kernel_describe(kernel)->coordinates, internal = it->system->scatter[kernel].internal;
 		for (int k = 0; internal >= 0 && k < group->count; k++) {
 			int own = group->index[k * size + internal];
-			if (own >= 0 && group->laws[k]->kind != RS_LAW_MAXWELL)
+			if (own >= 0 && group->laws[k]->kind != RS_LAW_MAXWELL && !as_before(group->laws[k]))
 				it->u[own] = it->before[own] = followed(group->laws[k], it->q[own]);
 		}
 	}

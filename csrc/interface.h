@@ -27,6 +27,7 @@ enum {
 	RS_FAULT_DAMPED = 3   /* its bypass damping alone */
 };
 enum { RS_SEEN_LENGTH = 0, RS_SEEN_RATE = 1, RS_SEEN_FORCE = 2, RS_SEEN = 3 };
+enum { RS_FOLLOWED_COMMAND = 3, RS_FOLLOWED_FAULT = 4, RS_SEEN_ROOM = 5 };  /* what rs_integrator_follow met last */
 
 typedef struct {
 	int n;               /* points */
@@ -48,7 +49,7 @@ typedef struct {
 	double force_limit;    /* N; 0: none */
 	double bypass_damping; /* N s/m, of RS_FAULT_DAMPED */
 	int fault;             /* RS_FAULT_... */
-	double *seen;          /* RS_SEEN: elongation (m), its rate (m/s) and force (N) of the last evaluation; or NULL */
+	double *seen;          /* RS_SEEN_ROOM: elongation (m), its rate (m/s) and force (N) of the last evaluation; or NULL */
 } rs_law;
 
 typedef struct {

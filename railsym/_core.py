@@ -133,7 +133,7 @@ class Laws:
         self.pointers = ffi.new("rs_law *[]", [ffi.addressof(self.array, k) for k in range(len(records))])
 
     def _seen(self):
-        room = ffi.new("double[]", lib.RS_SEEN)
+        room = ffi.new("double[]", lib.RS_SEEN_ROOM)
         self._keep.append(room)
         return room
 
