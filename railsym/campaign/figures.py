@@ -124,7 +124,8 @@ def _optimised(found, one):
     if one.optimisation.pareto:
         result = one.found
         first = result.problem.objectives[0]
-        front = Figure(f"{name}_front", f"Pareto front: {name}", "No case on the front is beaten by another in all objectives at once.", source, result.plot)
+        front = Figure(f"{name}_front", f"Pareto front: {name}", "No case on the front is beaten by another in all objectives at once; the star is the start: "
+                       "the vehicle's own values where they lie within the bounds.", source, result.plot)
         if len(result) < 3:
             return [front]
         return [front, Figure(f"{name}_designs", f"Designs on the front: {name}", f"Variables of the cases on the front, coloured by {first.name}.",

@@ -9,6 +9,8 @@ import math
 from html import escape
 from pathlib import Path
 
+from railsym.plots.units import short
+
 _PARTS = Path(__file__).parent.parent / "data" / "report"
 _DPI = 130
 
@@ -19,7 +21,7 @@ def number(value, digits=4):
         return ""
     if isinstance(value, (int,)) and not isinstance(value, bool):
         return f"{value:d}"
-    return f"{value:.{digits}g}"
+    return short(value, digits)
 
 
 def mark(source):

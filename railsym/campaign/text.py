@@ -7,7 +7,7 @@ import numpy as np
 
 from railsym.campaign.results import summary
 from railsym.cli_output import table
-from railsym.plots.units import shown
+from railsym.plots.units import short, shown
 
 
 def as_text(found):
@@ -42,7 +42,7 @@ def _uncertainty(found, unit, factor):
     if found.tornado is not None:
         t = found.tornado
         scale = [shown(u) for u in t.units]
-        rows = [[t.names[k], f"{scale[k][0] * t.low[k]:.4g}", f"{scale[k][0] * t.high[k]:.4g}", scale[k][1] or "-",
+        rows = [[t.names[k], short(scale[k][0] * t.low[k]), short(scale[k][0] * t.high[k]), scale[k][1] or "-",
                  f"{factor * t.change_low[k]:+.3g}", f"{factor * t.change_high[k]:+.3g}", f"{100 * t.share[k]:.1f} %"] for k in range(len(t.names))]
         blocks.append(f"tornado, from the gradient at the medians ({factor * t.nominal:.4g} {unit}, first-order standard deviation {factor * t.deviation:.3g} "
                       f"{unit})\n" + table(["factor", "low", "high", "unit", f"at low, {unit}", f"at high, {unit}", "variance"], rows, left=(0, 3)))

@@ -145,12 +145,13 @@ class _Run:
             cases = self.evaluations.many([self.problem.values(np.clip(c, 0.0, 1.0)) for c in np.atleast_2d(columns.T)])
             return np.array([[np.inf if c.failed else self.problem.violation(c.outputs) for c in cases]])
 
+        start = self.evaluations.one(self.problem.values(self.problem.start()))
         word = "rng" if "rng" in signature(differential_evolution).parameters else "seed"
         options = {"constraints": NonlinearConstraint(broken, -np.inf, 0.0)} if self.problem.constraints else {}
         found = differential_evolution(objective, [(0.0, 1.0)] * len(self.problem.variables), init="sobol", popsize=population, maxiter=self.most,
                                        tol=max(self.tolerance, 1e-4), polish=False, vectorized=True, updating="deferred",
                                        **{word: np.random.default_rng(seed)}, **options)
-        return self.result(_NAMES["global"], bool(found.success), str(found.message), None)
+        return self.result(_NAMES["global"], bool(found.success), str(found.message).rstrip("."), start)
 
     def _signed(self, outputs):
         objective = self.problem.objectives[0]

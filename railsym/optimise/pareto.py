@@ -37,7 +37,7 @@ def pareto_front(problem, *, population: int = 40, generations: int = 25, histor
     Returns
     -------
     ParetoFront
-        From all cases that were asked for, not from the last generation alone.
+        From all cases that were asked for, the start of the variables among them, not from the last generation alone.
 
     Raises
     ------
@@ -52,12 +52,13 @@ def pareto_front(problem, *, population: int = 40, generations: int = 25, histor
     fronts = []
     with History(problem, history, resume) as kept:
         evaluations = Evaluations(problem, kept, executor, follow)
+        start = evaluations.one(problem.values(problem.start()))
         while algorithm.has_next():
             asked = algorithm.ask()
             cases = evaluations.many([problem.values(place) for place in asked.get("X")])
             _tell(algorithm, asked, problem, cases)
             fronts.append(_best(problem, evaluations.order))
-        return _result(problem, evaluations, fronts)
+        return _result(problem, evaluations, fronts, start)
 
 
 def _nsga2(problem, population, generations, seed):
@@ -100,7 +101,7 @@ def _best(problem, cases):
     return [good[k] for k in sorted(keep, key=lambda k: (*values[k], good[k].number))]
 
 
-def _result(problem, evaluations, fronts):
+def _result(problem, evaluations, fronts, start):
     cases, front = evaluations.order, fronts[-1]
     failed = [c for c in cases if c.failed]
     if len(failed) == len(cases):
@@ -108,7 +109,7 @@ def _result(problem, evaluations, fronts):
     if not front:
         raise OptimisationError(f"none of the {len(cases)} cases keeps all constraints: {', '.join(map(str, problem.constraints))}; widen bounds or constraints")
     text = f"{len(front)} cases on the front of {len(cases)}, {len(fronts)} generations; {evaluations.computed} computed now, {len(failed)} failed"
-    return ParetoFront(problem, np.array([c.values for c in front]), np.array([[o.value(c.outputs) for o in problem.objectives] for c in front]),
+    return ParetoFront(problem, start, np.array([c.values for c in front]), np.array([[o.value(c.outputs) for o in problem.objectives] for c in front]),
                        tuple(c.outputs for c in front), tuple(c.number for c in front), tuple(cases), len(fronts), len(cases), evaluations.computed,
                        len(failed), _hypervolumes(problem, fronts), text)
 

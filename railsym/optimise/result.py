@@ -11,6 +11,8 @@ from railsym.optimise.history import Case
 from railsym.optimise.problem import Problem
 from railsym.plots.units import labelled, shown
 
+_ROWS = 12      # of a front that are printed
+
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
@@ -86,6 +88,8 @@ class ParetoFront:
     Attributes
     ----------
     problem : Problem
+    start : Case
+        The design that the variables start from: the vehicle as it is, in a study. Not given to the method, but a case like others.
     values : ndarray, shape (n, k)
         SI, sorted by the first objective, its best first.
     objectives : ndarray, shape (n, m)
@@ -102,6 +106,7 @@ class ParetoFront:
     """
 
     problem: Problem = field(repr=False)
+    start: Case = field(repr=False)
     values: np.ndarray
     objectives: np.ndarray
     outputs: tuple[dict, ...]
@@ -123,8 +128,9 @@ class ParetoFront:
         rows = np.hstack([self.objectives, self.values]) * [shown(unit)[0] for unit in units]
         width = [max(12, len(name)) for name in head]
         lines = [self.message, "  ".join(name.rjust(w) for name, w in zip(head, width))]
-        lines += ["  ".join(f"{value:{w}.5g}" for value, w in zip(row, width)) for row in rows]
-        return "\n".join(lines)
+        shown_rows = np.unique(np.linspace(0, len(rows) - 1, min(_ROWS, len(rows))).astype(int))
+        lines += ["  ".join(f"{value:{w}.5g}" for value, w in zip(row, width)) for row in rows[shown_rows]]
+        return "\n".join(lines + ([f"{_ROWS} of {len(rows)}, evenly over the first objective"] if len(rows) > _ROWS else []))
 
     def plot(self, **options):
         """Draw it; options and axes as `railsym.plots.plot_pareto`."""

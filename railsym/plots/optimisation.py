@@ -43,35 +43,48 @@ def plot_optimisation(result, *, axes=None):
 
 
 def plot_pareto(result, *, axes=None):
-    """Front of two objectives, or of every pair with the first where there are more; cases off the front pale.
+    """Front of two objectives; a third gives the colour, and with more there is a panel for each after the first.
 
     Parameters
     ----------
     result : railsym.optimise.ParetoFront
     axes : matplotlib Axes or array of them, optional
-        One for each objective after the first.
+        One; with four objectives or more one for each after the first.
 
     Returns
     -------
-    matplotlib Axes, or ndarray of Axes, shape (m - 1,)
+    matplotlib Axes, or ndarray of Axes
+        Cases off the front pale, the start as a star.
     """
-    problem, count = result.problem, len(result.problem.objectives) - 1
-    panels = new_axes(axes, 1, count, size=(0.6 + 5.4 * count, 4.2))[0]
+    count = len(result.problem.objectives)
+    pairs = [(0, 1)] if count <= 3 else [(0, k) for k in range(1, count)]
+    panels = new_axes(axes, 1, len(pairs), size=(1.0 + 5.4 * len(pairs), 4.4))[0]
+    for panel, pair in zip(panels, pairs):
+        _front(panel, result, pair, 2 if count == 3 else None)
+    return panels if len(panels) > 1 else panels[0]
+
+
+def _front(panel, result, pair, third):
+    """One panel: two objectives, and a third as colour."""
+    problem = result.problem
+    scale = np.array([shown(o.unit)[0] for o in problem.objectives])
+    names = [labelled(f"{o.name} ({o.sense})", o.unit) for o in problem.objectives]
     good = [c for c in result.cases if not c.failed and problem.violation(c.outputs) <= 0.0]
-    cloud = np.array([[o.value(c.outputs) for o in problem.objectives] for c in good])
-    first = problem.objectives[0]
-    x = shown(first.unit)[0]
-    for panel, k in zip(panels, range(1, count + 1)):
-        other = problem.objectives[k]
-        y = shown(other.unit)[0]
-        panel.plot(x * cloud[:, 0], y * cloud[:, k], ".", color=PALE, markersize=5, linestyle="none", label=f"{len(good)} cases")
-        drawn = np.column_stack([x * result.objectives[:, 0], y * result.objectives[:, k]])
-        if count == 1:
-            panel.plot(*drawn.T, color=BLUE, linewidth=0.9)
-        panel.plot(*drawn.T, "o", color=BLUE, markersize=4.5, linestyle="none", label=f"front, {len(result)} cases")
-        for row in dict.fromkeys((0, len(drawn) - 1)):
-            panel.annotate(f"case {result.numbers[row]}", drawn[row], (5, 5), textcoords="offset points", fontsize=7.5, color=BLACK)
-        tidy(panel, labelled(f"{first.name} ({first.sense})", first.unit), labelled(f"{other.name} ({other.sense})", other.unit))
-        panel.margins(0.08)
-        panel.legend(fontsize=8, frameon=False)
-    return panels if count > 1 else panels[0]
+    cloud = scale * np.array([[o.value(c.outputs) for o in problem.objectives] for c in good])
+    front = scale * result.objectives
+    panel.plot(*cloud[:, pair].T, ".", color=PALE, markersize=5, linestyle="none", label=f"{len(good)} cases")
+    if third is None:
+        if len(problem.objectives) == 2:
+            panel.plot(*front[:, pair].T, color=BLUE, linewidth=0.9)
+        panel.plot(*front[:, pair].T, "o", color=BLUE, markersize=4.5, linestyle="none", label=f"front, {len(front)} cases")
+    else:
+        points = panel.scatter(*front[:, pair].T, c=front[:, third], cmap="viridis", s=26, zorder=3, label=f"front, {len(front)} cases")
+        panel.figure.colorbar(points, ax=panel, label=names[third])
+    if not result.start.failed:
+        start = scale * [o.value(result.start.outputs) for o in problem.objectives]
+        panel.plot(*start[list(pair)], "*", color=VERMILION, markeredgecolor=BLACK, markersize=13, linestyle="none", zorder=4, label="start")
+    for row in dict.fromkeys((0, len(front) - 1)):
+        panel.annotate(f"case {result.numbers[row]}", front[row, list(pair)], (5, 5), textcoords="offset points", fontsize=7.5, color=BLACK)
+    tidy(panel, names[pair[0]], names[pair[1]])
+    panel.margins(0.1)
+    panel.legend(fontsize=8, frameon=False)

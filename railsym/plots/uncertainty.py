@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from railsym.plots.style import BLACK, BLUE, GREY, ORANGE, PALE, SKY, VERMILION, new_axes, tidy
-from railsym.plots.units import shown
+from railsym.plots.units import short, shown
 
 
 def plot_tornado(result, *, count=15, axes=None):
@@ -47,7 +47,7 @@ def plot_tornado(result, *, count=15, axes=None):
 
 def _range(result, k):
     factor, unit = shown(result.units[k])
-    return f"{factor * result.low[k]:.4g} to {factor * result.high[k]:.4g} {unit}".rstrip()
+    return f"{short(factor * result.low[k])} to {short(factor * result.high[k])} {unit}".rstrip()
 
 
 def plot_sobol(result, *, count=15, axes=None):

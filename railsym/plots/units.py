@@ -21,6 +21,12 @@ def shown(unit):
     return _SHOWN.get(unit, (1.0, unit))
 
 
+def short(value, digits=4):
+    """A number with some digits, without an exponent where it is of a usual size: 44660, not 4.466e+04."""
+    text = f"{value:.{digits}g}"
+    return f"{float(text):.0f}" if "e+0" in text and abs(value) < 1e7 else text
+
+
 def labelled(name, unit):
     """A name with its shown unit, for axes."""
     text = shown(unit)[1]
@@ -31,9 +37,9 @@ def round_range(values):
     """Tick texts of the ends of a range: as short as tells them apart."""
     low, high = float(min(values)), float(max(values))
     if low == high:
-        return f"{low:.4g}", ""
+        return short(low), ""
     for digits in range(3, 8):
-        texts = f"{low:.{digits}g}", f"{high:.{digits}g}"
+        texts = short(low, digits), short(high, digits)
         if texts[0] != texts[1]:
             break
     return texts
