@@ -164,6 +164,11 @@ def test_the_report_says_where_numbers_come_from(run):
     mean = found.results["speed"].mean() * 3.6
     assert f"{mean:.4g}" in text and f"{found.optimised[0].found.objective * 3.6:.4g}" in text
     assert f"case {int(found.results['speed'].argmin())}" in text
+    raw = (folder / "small.html").read_text(encoding="utf-8")
+    captions = re.findall(r"<figcaption>.*?</figcaption>", raw, re.S)
+    assert len(captions) == len(found.figures()) and all(re.search(r'href="#S\d+"', caption) for caption in captions)
+    cards = re.findall(r'<div class="card">.*?</div>', raw, re.S)
+    assert len(cards) >= 6 and all(re.search(r'href="#S\d+"', card) for card in cards)
 
 
 def test_failing_cases_are_in_the_report(tmp_path):
