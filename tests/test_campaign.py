@@ -231,6 +231,19 @@ def test_ctrl_c_says_what_is_kept(tmp_path, capsys, monkeypatch):
     assert "kept are study 24 of 24 cases, sobol 20 of 20 cases" in message and "--resume" in message
 
 
+@pytest.mark.parametrize("package", ["SALib", "pymoo"])
+def test_a_missing_package_is_said_before_anything_runs(package, tmp_path, capsys, monkeypatch):
+    import sys
+
+    monkeypatch.chdir(tmp_path)
+    for name in [name for name in sys.modules if name.partition(".")[0] == package]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, package, None)
+    (tmp_path / "s.toml").write_text(WHOLE, encoding="utf-8")
+    assert main(["study", "s.toml"]) == 2
+    assert "railsym[studies]" in capsys.readouterr().err and not (tmp_path / "s.nc").exists()
+
+
 @pytest.mark.parametrize("arguments,text", [
     (["study"], "FILE is missing"),
     (["study", "none.toml"], "--example"),

@@ -52,6 +52,15 @@ class Campaign:
                 found[f"recheck.{one.name}"] = store.with_name(f"{store.stem}_{one.name}.nc")
         return found
 
+    def _check_packages(self):
+        """What is missing is said before hours of computing."""
+        from railsym.uncertainty.packages import needed
+
+        if self.uncertainty is not None and self.uncertainty.sobol:
+            needed("SALib.analyze.sobol", "Sobol indices")
+        if any(one.pareto for one in self.optimisations):
+            needed("pymoo.algorithms.moo.nsga2", "Pareto fronts")
+
     def run(self, store, *, workers: int = 1, executor=None, resume: bool = False, progress: bool = False,
             say: Callable[[str], None] | None = None) -> CampaignResults:
         """Compute what the files do not hold yet.
@@ -81,6 +90,7 @@ class Campaign:
             What the study or an optimisation raises; what was computed is on disk.
         """
         files = self.files(store)
+        self._check_packages()
         if not resume:
             _refuse(files)
         say = say or (lambda text: None)

@@ -62,12 +62,12 @@ def pareto_front(problem, *, population: int = 40, generations: int = 25, histor
 
 
 def _nsga2(problem, population, generations, seed):
-    from pymoo.algorithms.moo.nsga2 import NSGA2
-    from pymoo.core.problem import Problem as Pymoo
+    from railsym.uncertainty.packages import needed
 
+    method, base = needed("pymoo.algorithms.moo.nsga2", "Pareto fronts"), needed("pymoo.core.problem", "Pareto fronts")
     # one constraint more: whether there is a result
-    space = Pymoo(n_var=len(problem.variables), n_obj=len(problem.objectives), n_ieq_constr=1 + _rows(problem), xl=0.0, xu=1.0)
-    algorithm = NSGA2(pop_size=population)
+    space = base.Problem(n_var=len(problem.variables), n_obj=len(problem.objectives), n_ieq_constr=1 + _rows(problem), xl=0.0, xu=1.0)
+    algorithm = method.NSGA2(pop_size=population)
     algorithm.setup(space, termination=("n_gen", generations), seed=seed, verbose=False)
     return algorithm
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from railsym.uncertainty.errors import UncertaintyError
+from railsym.uncertainty.packages import needed
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +98,7 @@ def saltelli(count: int, base: int, *, second_order: bool = False, seed: int = 1
     UncertaintyError
         Base points that are no power of two.
     """
-    from SALib.sample.sobol import sample
-
+    sample = needed("SALib.sample.sobol", "Sobol indices").sample
     if base < 2 or base & (base - 1):
         raise UncertaintyError(f"{base} base points: a power of two from 2 on is needed (64, 128, 256), or the Sobol sequence loses its balance")
     return sample(_problem(count), base, calc_second_order=second_order, seed=np.random.default_rng(seed))
@@ -130,8 +130,7 @@ def sobol_indices(names, values, *, second_order: bool = False, confidence: floa
     UncertaintyError
         A number of values that is not that of the scheme, fewer than two base points without failure, or an output that does not vary.
     """
-    from SALib.analyze.sobol import analyze
-
+    analyze = needed("SALib.analyze.sobol", "Sobol indices").analyze
     names = tuple(names)
     values = np.ma.filled(np.ma.asarray(values, dtype=float), np.nan).ravel()
     block = (2 if second_order else 1) * len(names) + 2
