@@ -20,7 +20,7 @@ from railsym.campaign.campaign_file import EXAMPLE
 from railsym.sweep import CriticalSpeed, FullGrid, Grid, Study
 
 HERE = Path(__file__).resolve().parent / "images"
-WANTED = {"histogram": "study_histogram", "tornado": "study_tornado", "sobol": "study_sobol", "parallel": "study_parallel", "damper_map": "study_damper_map",
+WANTED = {"histogram": "study_histogram", "tornado": "study_tornado", "sobol": "study_sobol", "damper_map": "study_damper_map",
           "damper_recheck": "study_recheck", "trade_front": "study_pareto"}
 
 
