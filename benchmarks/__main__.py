@@ -54,7 +54,7 @@ def measured(groups, path=None):
     print("\n".join([*machine.lines(where), "", table.head()]), flush=True)
     for name, function in groups.items():
         try:
-            figures = function()
+            figures = list(function())
         except Exception as error:  # whatever one group meets, the figures of the others are not lost
             failed[name] = f"{type(error).__name__}: {error}"
             continue

@@ -21,6 +21,7 @@ from benchmarks.sweep import sweep_figures
 from benchmarks.tilt import tilt_figures
 from benchmarks.track import track_figures
 from benchmarks.transient import transient_figures
+from benchmarks.transient_accuracy import accuracy_figures
 
 _DERIVE = "from derive.__main__ import generated_files; generated_files()"
 _IMPORT = "import time; start = time.perf_counter(); import railsym; print(time.perf_counter() - start)"
@@ -181,5 +182,5 @@ def _bench_records(model):
 
 GROUPS = {"derive": derivation, "kernels": kernel_figures, "import": imports, "linearise": linearisation, "figures": stability_figures, "cases": cases_figures,
           "sensitivity": sensitivities, "creep": creep_figures, "dampers": damper_figures, "contact": contact_figures, "track": track_figures,
-          "wheel_rail": wheel_rail_figures, "transient": transient_figures, "long_run": long_run_figures, "curving": curving_figures,
+          "wheel_rail": wheel_rail_figures, "transient": transient_figures, "accuracy": accuracy_figures, "long_run": long_run_figures, "curving": curving_figures,
           "sweep": sweep_figures, "tilt": tilt_figures}

@@ -118,6 +118,8 @@ int rs_integrator_begin(rs_integrator *it, double time)
 	int status = rs_integrator_move(it, time);
 	if (status)
 		return status;
+	if (it->travel)
+		rs_travel_begin(it->travel);
 	for (int k = it->second; k < it->n; k++)
 		it->u[k] = 0.0;
 	rs_integrator_place(it, it->q, it->u, NULL);

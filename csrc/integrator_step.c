@@ -224,6 +224,16 @@ static int iterate(rs_integrator *it, const scheme *with)
 	return RS_NOT_CONVERGED;
 }
 
+/* Track and speed within a step. */
+static int within(rs_integrator *it, double time, double end)
+{
+	if (!it->travel)
+		return RS_OK;
+	int status = rs_travel_within(it->travel, time, end, it->af);
+	it->system->travel_acceleration = it->travel->dV;
+	return status;
+}
+
 static int advance(rs_integrator *it, double from, double h)
 {
 	scheme with = {.h = h, .tau = it->gamma * h * it->af / it->am};
@@ -233,7 +243,7 @@ static int advance(rs_integrator *it, double from, double h)
 	/* af = 1 asks for the end of the step, which may be a kink: this side of it */
 	double at = it->af < 1.0 - 1e-6 ? it->af : 1.0 - 1e-6;
 	predict(it, h);
-	int status = rs_integrator_move(it, from + at * h), ran = 0; /* the coordinate that changed most when it last failed */
+	int status = within(it, from + at * h, from + h), ran = 0; /* the coordinate that changed most when it last failed */
 	/* a change of tau in the last digit, from the difference of two times, is no reason for new factors */
 	int factors = fabs(it->factored - with.tau) > 1e-7 * with.tau ? ALL : it->wheels && it->seen > RENEW ? WHEELS : KEPT;
 	it->seen = 0.0;
@@ -259,6 +269,8 @@ static int advance(rs_integrator *it, double from, double h)
 		return status;
 	}
 	accept(it, h);
+	if (it->travel)
+		rs_travel_next(it->travel);
 	it->report.time = from + h;
 	return RS_OK;
 }

@@ -222,8 +222,13 @@ void rs_system_solve(rs_system *system, double *d)
 
 int rs_system_not_finite(const rs_system *system)
 {
-	for (int k = 0; k < system->second; k++)
+	const double *q = system->model->state, *u = q + system->model->stride;
+	int found = -1;
+	for (int k = 0; k < system->second && found < 0; k++)
 		if (!isfinite(system->r[system->place[k]]))
+			found = k;
+	for (int k = 0; k < system->n && found >= 0; k++)
+		if (!isfinite(q[k]) || !isfinite(u[k]))
 			return k;
-	return -1;
+	return found;
 }

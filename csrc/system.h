@@ -82,7 +82,7 @@ void rs_system_load(rs_system *system, const double *b);
 /* S d = -r with the factors as they are; d: n. r is overwritten. */
 void rs_system_solve(rs_system *system, double *d);
 
-/* A coordinate whose residual is not finite, -1 for none. */
+/* A coordinate whose residual is not finite, or where there is one rather one that is not finite itself; -1 for none. */
 int rs_system_not_finite(const rs_system *system);
 
 #endif

@@ -65,6 +65,8 @@ void rs_travel_free(rs_travel *travel)
 	free(travel->wheelset);
 	free(travel->w);
 	free(travel->rail);
+	free(travel->rail_start);
+	free(travel->rail_end);
 	free(travel);
 }
 
@@ -128,8 +130,11 @@ int rs_travel_wheelsets(rs_travel *travel, int count, const int *frame)
 			return RS_BAD_INDEX;
 	travel->wheelset = malloc((size_t)(count + 1) * sizeof(int));
 	travel->w = calloc(3 * (size_t)count + 1, sizeof(double));
-	travel->rail = calloc(RS_TRACK_RAILS * (size_t)count + 1, sizeof(double));
-	if (!travel->wheelset || !travel->w || !travel->rail)
+	double **rails[3] = {&travel->rail, &travel->rail_start, &travel->rail_end};
+	for (int k = 0; k < 3; k++)
+		if (!(*rails[k] = calloc(RS_TRACK_RAILS * (size_t)count + 1, sizeof(double))))
+			return RS_NO_MEMORY;
+	if (!travel->wheelset || !travel->w)
 		return RS_NO_MEMORY;
 	memcpy(travel->wheelset, frame, (size_t)count * sizeof(int));
 	travel->wheelsets = count;
@@ -193,12 +198,13 @@ static void set_pair(const rs_travel *travel, rs_moved_pair *pair)
 		pair->to[(3 + k) * lanes] = pose.C[k];
 }
 
-static int set_wheelset(rs_travel *travel, int k, double s)
+/* Rails at all wheelsets, when the vehicle is at s. */
+static int rails_at(const rs_travel *travel, double s, double *rail)
 {
-	const rs_track_frame *frame = travel->frame + travel->wheelset[k];
-	for (int i = 0; i < 3; i++)
-		travel->w[3 * k + i] = travel->V * frame->turning[i];
-	return travel->track ? rs_track_rails_at(travel->track, s, travel->rail + RS_TRACK_RAILS * k) : RS_OK;
+	int status = RS_OK;
+	for (int k = 0; travel->track && k < travel->wheelsets && !status; k++)
+		status = rs_track_rails_at(travel->track, s + travel->x[travel->wheelset[k]], rail + RS_TRACK_RAILS * k);
+	return status;
 }
 
 /* Frames at s; where all are on the straight that all were on before, they stay as they are but for their places, which only poses
@@ -222,14 +228,15 @@ static int set_frames(rs_travel *travel, double s)
 	return status;
 }
 
-int rs_travel_set(rs_travel *travel, double time)
+/* All but the rails. */
+static int set_motion(rs_travel *travel, double s)
 {
-	double s = rs_travel_place(travel, time, &travel->V, &travel->dV);
 	int status = travel->track ? set_frames(travel, s) : RS_OK;
-	for (int k = 0; k < travel->wheelsets && !status; k++)
-		status = set_wheelset(travel, k, s + travel->x[travel->wheelset[k]]);
 	if (status)
 		return status;
+	for (int k = 0; k < travel->wheelsets; k++)
+		for (int i = 0; i < 3; i++)
+			travel->w[3 * k + i] = travel->V * travel->frame[travel->wheelset[k]].turning[i];
 	if (travel->V != travel->written[0] || travel->dV != travel->written[1])
 		for (int k = 0; k < travel->bodies; k++)
 			set_body(travel, travel->body + k);
@@ -239,4 +246,35 @@ int rs_travel_set(rs_travel *travel, double time)
 		set_pair(travel, travel->pair + k);
 	travel->still = 1;
 	return RS_OK;
+}
+
+int rs_travel_set(rs_travel *travel, double time)
+{
+	double s = rs_travel_place(travel, time, &travel->V, &travel->dV);
+	int status = set_motion(travel, s);
+	return status ? status : rails_at(travel, s, travel->rail);
+}
+
+void rs_travel_begin(rs_travel *travel)
+{
+	if (travel->wheelsets)
+		memcpy(travel->rail_start, travel->rail, RS_TRACK_RAILS * (size_t)travel->wheelsets * sizeof *travel->rail);
+}
+
+int rs_travel_within(rs_travel *travel, double time, double end, double share)
+{
+	double V, dV;
+	int status = rails_at(travel, rs_travel_place(travel, end, &V, &dV), travel->rail_end);
+	if (status)
+		return status;
+	for (int k = 0; k < RS_TRACK_RAILS * travel->wheelsets; k++)
+		travel->rail[k] = travel->rail_start[k] + share * (travel->rail_end[k] - travel->rail_start[k]);
+	return set_motion(travel, rs_travel_place(travel, time, &travel->V, &travel->dV));
+}
+
+void rs_travel_next(rs_travel *travel)
+{
+	double *start = travel->rail_start;
+	travel->rail_start = travel->rail_end;
+	travel->rail_end = start;
 }

@@ -56,6 +56,7 @@ struct rs_travel {
 	rs_moved_pair *pair;
 	int *wheelset;            /* frames of the wheelsets */
 	double *w, *rail;         /* 3 and RS_TRACK_RAILS a wheelset */
+	double *rail_start, *rail_end;  /* rails at both ends of a step */
 };
 
 /* Place (m) of the vehicle's centre at a time, speed and its rate. */
@@ -63,5 +64,15 @@ double rs_travel_place(const rs_travel *travel, double time, double *V, double *
 
 /* Everything at a time; status of the track. */
 int rs_travel_set(rs_travel *travel, double time);
+
+/* The rails of the time last set are those at the start of the next step. */
+void rs_travel_begin(rs_travel *travel);
+
+/* Everything at a time within a step but the rails, which go straight from its start to its end: share of the way. A scheme that
+ * takes places in between from straight lines puts the wheels that far off a rail that bends, and a micrometre is a kilonewton. */
+int rs_travel_within(rs_travel *travel, double time, double end, double share);
+
+/* The next step starts where this one ends. */
+void rs_travel_next(rs_travel *travel);
 
 #endif

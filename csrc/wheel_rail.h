@@ -30,7 +30,7 @@
  *             Loads and forces are continuous; slopes jump where a patch lifts off against its damping, and inside
  *             FASTSIM and FaStrip where a cell begins to slip.
  * rs_wheel_rail_failure  after a status other than RS_OK
- *   Returned  wheel      its number, -1 after RS_BAD_SPEED
+ *   Returned  wheel      its number, -1 after RS_BAD_SPEED, and where the last rs_wheel_rail_rows met nothing
  *             variable   0 y, 1 roll, 2 drop (with a table: penetration), 3 yaw: of the wheel's place against its rail as in
  *                        contact/contact_table.h; 4 ln(a/b); -1: its forces
  *             value      of the variable

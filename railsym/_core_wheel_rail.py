@@ -8,7 +8,7 @@ import numpy as np
 from railsym._core import CREEP_LAWS, _check, _doubles, _vector, ffi, lib
 from railsym.contact_pair import DEEPEST_IN_MOTION, ContactPair
 from railsym.contact_table import ContactTable, OutOfTableError
-from railsym.errors import ContactError
+from railsym.errors import ContactError, CoreError
 
 PLACE = ("lateral shift", "roll", "drop", "yaw")
 WHEEL = {"Y": lib.RS_WHEEL_Y, "Q": lib.RS_WHEEL_Q, "X": lib.RS_WHEEL_X, "t_gamma": lib.RS_WHEEL_TGAMMA,
@@ -146,6 +146,8 @@ class WheelRailCore:
         number, value, at = variable[0], value[0], "" if time is None else f" at t = {time:.6g} s"
         if status == lib.RS_BAD_SPEED:
             raise ContactError(f"speed is {speed!r} m/s{at}; creepages are slips over the speed, so it must be positive and finite")
+        if wheel[0] < 0:
+            raise CoreError(f"status {status} is not one of the wheels")
         where = self.names[wheel[0]]
         if status == lib.RS_OUT_OF_TABLE and number < len(PLACE):
             raise _left_table(where, *self._shapes[wheel[0]].outside(number, place), time)

@@ -197,6 +197,7 @@ static void take_motion(rs_wheel_rail *wr, int k)
 int rs_wheel_rail_rows(rs_wheel_rail *wr, const double *q, const double *u, double V, const double *w,
                        const double *rail, const double *seed, double *rows, double *blocks)
 {
+	wr->failed_wheel = wr->failed_variable = -1;
 	if (!(V > 0.0))
 		return fail(wr, RS_BAD_SPEED, -1, -1, V);
 	for (int first = 0; first < 2 * wr->wheelsets; first += RS_LANES)
