@@ -77,8 +77,8 @@ class LinearModel:
         n = len(self.coordinates)
         for name in MATRICES:
             matrix = getattr(self, name)
-            if matrix is getattr(self.base, name, None):
-                continue  # looked at when the base was made
+            if matrix is getattr(self.base, name, None) or matrix is getattr(self.template, name, None):
+                continue  # looked at when the base or template was made
             if matrix.shape != (n, n):
                 raise ModelError(f"{name} has shape {matrix.shape}; {n} coordinates need ({n}, {n})")
             # a sum is not finite if any entry is not: one pass without a temporary
@@ -86,7 +86,7 @@ class LinearModel:
                 row, column = np.argwhere(~np.isfinite(matrix))[0]
                 raise ModelError(f"{name}[{self.coordinates[row]}, {self.coordinates[column]}] = {matrix[row, column]} "
                                  "is not finite; check the vehicle's parameters and the wheel loads")
-        if self.base is None and self.mass[self.first_order].any():
+        if self.mass is not getattr(self.base or self.template, "mass", None) and self.mass[self.first_order].any():
             raise ModelError("first-order coordinates have no inertia, but the mass matrix has entries in their rows")
         if self.stiffness[:, self.cyclic].any():
             raise ModelError("a cyclic coordinate exerts no force, but its column of the stiffness matrix is not zero")

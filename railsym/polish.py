@@ -112,12 +112,12 @@ def polish_eigenvalue(model: LinearModel, speed, eigenvalue, right, left) -> Eig
 
 def _advanced(unknown, derivative, value, failed):
     """One damped Newton step in (omega, V), and its relative length."""
-    # both unknowns in units of themselves: the 2 x 2 system is then well scaled
-    scaled = derivative * unknown
-    try:
-        change = np.linalg.solve(scaled, [-value.real, -value.imag])
-    except np.linalg.LinAlgError:
-        raise failed() from None
+    # both unknowns in units of themselves: the 2 x 2 system is then well scaled, and Cramer's rule as good as any
+    (a, b), (c, d) = (derivative * unknown).tolist()
+    determinant = a * d - b * c
+    if determinant == 0.0:
+        raise failed()
+    change = np.array([b * value.imag - d * value.real, c * value.real - a * value.imag]) / determinant
     length = float(np.abs(change).max())
     if not np.isfinite(length):
         raise failed()

@@ -207,8 +207,8 @@ def _oscillations(matrix):
         raise ConvergenceError(f"eigenvalues of a reduced model of {len(matrix)} states did not converge; check the vehicle's data")
     divergent = real[(imaginary == 0) & (real > _NEUTRAL * np.abs(real).max())]
     above = np.flatnonzero(imaginary > 0)
-    # LAPACK puts the real and the imaginary part of a pair's vector in neighbouring columns
-    return real[above] + 1j * imaginary[above], *(v[:, above] + 1j * v[:, above + 1] for v in (right, left)), divergent
+    # LAPACK puts the real and the imaginary part of a pair's vector in neighbouring columns, which lie in one piece
+    return real[above] + 1j * imaginary[above], *((v.T[above] + 1j * v.T[above + 1]).T for v in (right, left)), divergent
 
 
 def is_same(a: EigenPoint, b: EigenPoint) -> bool:

@@ -130,12 +130,17 @@ def find_mirror(model: LinearModel) -> tuple[np.ndarray, np.ndarray] | None:
 
 def _commutes(matrix, permutation, sign) -> bool:
     # an entry without counterpart is found from its own side, so looking at the entries that are not zero is enough
-    row, column = np.nonzero(matrix != 0.0)          # of truth values: ten times as fast as of numbers
-    value = matrix[row, column]
-    image = matrix[permutation[row], permutation[column]] * (sign[row] * sign[column])
-    rows = np.abs(matrix).max(axis=1)
+    place = np.flatnonzero(matrix != 0.0)          # of truth values: ten times as fast as of numbers
+    if not len(place):
+        return True
+    row, column = np.divmod(place, len(matrix))
+    value = matrix.ravel()[place]
+    image = matrix.ravel()[permutation[row] * len(matrix) + permutation[column]] * (sign[row] * sign[column])
+    first = np.flatnonzero(np.diff(row, prepend=-1))
+    largest = np.zeros(len(matrix))
+    largest[row[first]] = np.maximum.reduceat(np.abs(value), first)
     # rows that are zero but for rounding are measured against the whole matrix
-    allowed = np.maximum(_DIFFERENCE * rows, _ROUNDING * rows.max())
+    allowed = np.maximum(_DIFFERENCE * largest, _ROUNDING * largest.max())
     return bool((np.abs(image - value) <= allowed[row]).all())
 
 

@@ -12,7 +12,7 @@ from railsym.configurations import Configuration, apply_structure
 from railsym.parameters import Parameters, changed
 from railsym.vehicle_checks import Problem, unknown, vehicle_error
 from railsym.vehicle_file import read_vehicle_file
-from railsym.vehicle_layout import Layout, attachment_names, build_bodies, build_curve, build_elements
+from railsym.vehicle_layout import Layout, attachment_names, build_bodies, build_curve, build_elements, renumber_elements
 from railsym.vehicle_parts import Axlebox, Body, Curve, Element, End, FrozenDict, Quantity
 
 __all__ = ["Axlebox", "Body", "Configuration", "Curve", "Element", "End", "Quantity", "Vehicle", "load_vehicle", "vehicles"]
@@ -166,11 +166,11 @@ class Vehicle:
             raise vehicle_error(self._shown_name(), "replace", changes, "a mapping of dotted names to values is needed")
         try:
             layout, values, touched = changed(self._layout, self._values, changes)
-            return self._rebuild(layout, values, touched)
+            return self._rebuild(layout, values, touched, changes)
         except Problem as problem:
             raise vehicle_error(self._shown_name(), problem.key, problem.value, problem.text) from None
 
-    def _rebuild(self, layout, values, touched):
+    def _rebuild(self, layout, values, touched, changes):
         """Assemble anew, taking over every part that `touched` leaves alone."""
         bodies, elements, curves = self._body_groups, self._element_groups, self.curves
         changed_bodies = {
@@ -181,8 +181,11 @@ class Vehicle:
         if "curves" in touched:
             curves = FrozenDict({name: build_curve(name, values) for name in layout.curves})
             touched = touched | {name for name, group in layout.elements.items() if group.curves}
+        moved = {name.partition(".")[0] for name in changes if "position" in name or "orientation" in name}
         changed_elements = {
-            name: build_elements(group, values, curves) for name, group in layout.elements.items() if name in touched
+            name: build_elements(group, values, curves) if name in moved
+            else renumber_elements(group, values, curves, elements[name])
+            for name, group in layout.elements.items() if name in touched
         }
         bodies = bodies | changed_bodies if changed_bodies else bodies
         elements = elements | changed_elements if changed_elements else elements

@@ -259,6 +259,12 @@ def _check_actuator(group, parameters):
         raise Problem(f"{group.name}.stiffness", 0.0, "an actuator that follows a commanded length needs a stiffness above 0 N/m")
 
 
+def renumber_elements(group, values, curves, elements):
+    """The elements of a group where they are, with new parameters; arguments and errors as `build_elements`."""
+    parameters = _element_parameters(group, values, curves)
+    return tuple(Element(e.name, e.group, e.type, e.first, e.second, e.axes, e.axis, parameters) for e in elements)
+
+
 def _check_line(key, first, second):
     dx, dy, dz = second - first
     length = (dx * dx + dy * dy + dz * dz) ** 0.5
