@@ -35,6 +35,7 @@ def add_tilt(commands, typed, add_vehicle, add_output):
                          help="error of the place in the track database (default 5m)")
     command.add_argument("--no-improvements", action="store_true", help="passive and active only")
     command.add_argument("--faults", action="store_true", help="also sensors and actuators that fail, and what it ends in (a minute)")
+    command.add_argument("--sensitivity", action="store_true", help="also the active case with other biases, losses and delays (half a minute)")
     command.add_argument("--law", metavar="NAME", default="fastsim", help="creep law (default fastsim)")
     command.add_argument("--step", type=typed(quantity, "s", "step"), metavar="TIME", default=1e-3, help="of the integration (default 1ms)")
     add_contact(command, typed)
@@ -61,7 +62,7 @@ def run(options):
     if not speed > 0.0:
         raise CommandError(f"--speed {speed:g} m/s: a speed above 0 is needed")
     study = tilt_study(vehicle, _track(options), speed=speed, pair=pair, parameters=parameters, sensors=sensors, improvements=not options.no_improvements,
-                       faults=options.faults, coach=COACH if options.coach is None else options.coach,
+                       faults=options.faults, sensitivity=options.sensitivity, coach=COACH if options.coach is None else options.coach,
                        offset=OFFSET if options.database_offset is None else options.database_offset, law=options.law, friction=options.friction,
                        dt=options.step, channels=_drawn(options, vehicle), progress=sys.stderr.isatty())
     if options.json != "-":

@@ -35,7 +35,7 @@ class TiltStudy:
         Of the plain active case.
     cases : tuple of TiltCase
         Passive, active, and the improvements.
-    faults : tuple of TiltCase
+    faults, sensitivity : tuple of TiltCase
     loop : TiltLoop
     """
 
@@ -43,13 +43,15 @@ class TiltStudy:
     parameters: TiltParameters
     cases: tuple
     faults: tuple = ()
+    sensitivity: tuple = ()
     loop: Any = field(default=None, repr=False)
 
     def __getitem__(self, name):
-        for case in (*self.cases, *self.faults):
+        known = (*self.cases, *self.faults, *self.sensitivity)
+        for case in known:
             if case.name == name:
                 return case
-        raise TiltError(f"no case {name!r}; there are {', '.join(case.name for case in (*self.cases, *self.faults))}")
+        raise TiltError(f"no case {name!r}; there are {', '.join(case.name for case in known)}")
 
     @property
     def message(self):
@@ -70,7 +72,7 @@ class TiltStudy:
         return plot_tilt_study(self, axes=axes)
 
 
-def tilt_study(vehicle, track=None, *, speed=SPEED, pair=None, parameters=None, sensors=None, improvements=True, faults=False, coach=COACH, offset=OFFSET,
+def tilt_study(vehicle, track=None, *, speed=SPEED, pair=None, parameters=None, sensors=None, improvements=True, faults=False, sensitivity=False, coach=COACH, offset=OFFSET,
                compiled=False, law="fastsim", grid=(20, 20), friction=None, dt=1e-3, channels=(), progress=False):
     """Run a vehicle through curves without and with active tilt.
 
@@ -90,6 +92,8 @@ def tilt_study(vehicle, track=None, *, speed=SPEED, pair=None, parameters=None, 
         Also better detection, signals of a leading vehicle ``coach`` m ahead (constant speed only), a track database ``offset`` m off.
     faults : bool
         Also the fault cases of `railsym.studies.tilt_faults`.
+    sensitivity : bool
+        Also the active case with other biases, losses, delays: `railsym.studies.tilt_sensitivity`.
     compiled : bool
         The controller in C; the same results.
     law, grid, friction, dt : optional
@@ -128,13 +132,11 @@ def tilt_study(vehicle, track=None, *, speed=SPEED, pair=None, parameters=None, 
             cases.append(run("leading", LEADING.format(coach), _leading_unit(scene, p, sensors, coach, float(speed))))
         for name, off in (("database", offset), ("database, exact", 0.0)):
             cases.append(run(name, f"track database, {off:g} m off", TiltUnit(make(by_place(p), TrackDatabase.of(scene.track, offset=off)), sensors)))
-    found = ()
-    if faults:
-        from railsym.studies.tilt_faults import fault_cases
+    from railsym.studies.tilt_faults import fault_cases
+    from railsym.studies.tilt_sensitivity import sensitivity_cases
 
-        found = tuple(fault_cases(scene, p, sensors, passive, progress))
-    loop = TiltLoop.of(vehicle, float(np.mean(passive.run["V"])), p)
-    return TiltStudy(scene, p, tuple(cases), found, loop)
+    more = [tuple(make_cases(scene, p, sensors, passive, progress)) if wanted else () for make_cases, wanted in ((fault_cases, faults), (sensitivity_cases, sensitivity))]
+    return TiltStudy(scene, p, tuple(cases), *more, TiltLoop.of(vehicle, float(np.mean(passive.run["V"])), p))
 
 
 def make_scene(vehicle, track=None, speed=SPEED, pair=None, options=None, channels=()):

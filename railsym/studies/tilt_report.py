@@ -21,10 +21,12 @@ def report(study):
              "passengers: peak and jerk of the lateral acceleration on the floor (m/s^2, m/s^3, low-passed at 2 Hz); lag of tilt behind the ideal one;",
              "what a perfect tilt would have spared (over, m/s^2); P_CT (formula recalled) of the worst transition, standing", passengers(study), "",
              "tilting and track", loads(study), "", steady(study), "", f"loop: {study.loop}"]
-    lines += [f"{case.name}: {case.run.message}" for case in (*study.cases, *study.faults) if case.run.status != "completed"]
+    lines += [f"{case.name}: {case.run.message}" for case in (*study.cases, *study.faults, *study.sensitivity) if case.run.status != "completed"]
     lines += [f"{case.name}: {said}" for case in study.cases for said in case.reports]
     if study.faults:
         lines += ["", "fault cases", fault_table(study)]
+    if study.sensitivity:
+        lines += ["", "the active case with one change each", sensitivity_table(study)]
     return "\n".join(lines)
 
 
@@ -109,8 +111,18 @@ def fault_table(study):
     for case in study.faults:
         said = "; ".join(dict.fromkeys(f"{r.fault.name.lower()} at {r.time:.2f} s" for r in case.reports)) or "none reported"
         rows.append([case.name, case.text, said, case.end, f"{max(case.ride[p]['peak'] for p in ('front', 'middle', 'rear')):.2f}",
-                     f"{np.degrees(np.abs(case.tilt).max()):.2f}", f"{np.degrees(case.tilt[-1]):.2f}", f"{case.rails['Y/Q']:.3f}", f"{100.0 * case.rails['unloading']:.0f}"])
+                     f"{np.degrees(np.abs(case.tilt).max()):.2f}", f"{round(np.degrees(case.tilt[-1]), 2) + 0.0:.2f}", f"{case.rails['Y/Q']:.3f}", f"{100.0 * case.rails['unloading']:.0f}"])
     return table(["case", "", "reported", "ends", "floor, peak m/s^2", "tilt, deg", "tilt at the end", "Y/Q", "unloading, %"], rows, left=(0, 1, 2, 3))
+
+
+def sensitivity_table(study):
+    """Table of the active case with changes."""
+    rows = []
+    for case in (study["active"], *study.sensitivity):
+        worst = max((case.ride[place] for place in ("front", "middle", "rear")), key=lambda ride: ride["peak"])
+        rows.append([case.text, f"{worst['peak']:.2f}", number(case.delay, ".2f"), number(case.delay * case.speed, ".1f"), f"{worst['over_rms']:.3f}",
+                     f"{worst['over_peak']:.2f}", number(worst.get("P_CT"), ".1f"), case.end])
+    return table(["", "floor, peak m/s^2", "lag, s", "lag, m", "over, rms", "over, peak", "P_CT, %", "ends"], rows, left=(0, 7))
 
 
 def as_data(study):
@@ -119,6 +131,7 @@ def as_data(study):
             "units": {"peak": "m/s^2", "jerk": "m/s^3", "over_peak": "m/s^2", "over_rms": "m/s^2", "P_CT": "%", "delay": "s", "delay_distance": "m", "tilt": "rad",
                       "force": "N", "power": "W", "work": "J", "sum_Y": "N"},
             "cases": [_case(case) for case in study.cases], "faults": [_case(case) for case in study.faults],
+            "sensitivity": [_case(case) for case in study.sensitivity],
             "steady": steady_rows(study), "loop": _loop(study.loop)}
 
 
