@@ -14,7 +14,7 @@ from railsym.errors import VehicleFileError
 from railsym.vehicle import SHIPPED, Quantity, load_vehicle, vehicles
 from railsym.vehicle_layout import rotation
 
-NAMES = ("bogie", "cooperrider", "manchester_vehicle1", "pendolino", "wheelset")
+NAMES = ("bogie", "cooperrider", "manchester_vehicle1", "pendolino", "pendolino_tilting", "wheelset")
 TABLE_II = {  # primary anti-yaw dampers, secondary ones, Maxwell models, friction
     "AS_K": (8, 4, True, 0.3),
     "noASS_K": (8, 0, True, 0.3),
