@@ -16,7 +16,8 @@ _PATH_STEP = 5e-5            # m of shift, of the rigid contact that is searched
 _JUMP = 0.1                  # rad: a jump of the contact angle that parts two zones, far more than the wheelset rolls
 _SHIFT_STEP = 2e-4           # m between the nodes of the tread
 _ROLL_STEP, _ROLL = 2.5e-3, 10e-3   # rad
-_LEVELS, _USUAL = 6, 3e-4    # of sqrt(penetration) down to a penetration (m); deeper tables have more, equally far apart
+_LEVELS, _USUAL = 11, 3e-4   # of sqrt(penetration) down to a penetration (m); deeper tables have more, equally far apart: with 6, place and
+                             # slopes of a patch that grows over a change of curvature err by 3 %, and critical speeds too
 _MOST_FAILURES = 0.01        # of the nodes: at edges of a profile, where the table then ends
 _FINE = (1, 4, 2)            # parts of a step of the shift: contact moves fastest through the flange root
 

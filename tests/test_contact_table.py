@@ -94,7 +94,7 @@ def test_elastic_conicity():
     # whose definition of the radius difference is not known: 0.02)
     found = pair().equivalent_conicity([1e-3, 3e-3], load=LOAD).conicity
     assert found == pytest.approx([0.22, 0.172], abs=0.02)
-    assert found == pytest.approx([0.2355, 0.1750], abs=5e-4)             # 2026-11-26, so that a change is seen
+    assert found == pytest.approx([0.2342, 0.1751], abs=5e-4)             # 2026-11-27, so that a change is seen
     assert pair().equivalent_conicity([1e-3, 3e-3], load=LOAD, with_roll=True).conicity == pytest.approx(found, rel=0.04)
 
 

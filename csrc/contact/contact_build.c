@@ -160,13 +160,13 @@ static rs_zone part_of(builder *b, const closed *zones, int zone)
 static int fill_levels(builder *b, int zone, rs_zone part, const closed *own, int shift, int roll)
 {
 	rs_contact_table *t = b->table;
-	double length[RS_STRIPS] = {0.0}; /* of the strips at the level before, over sqrt(normal) */
+	rs_patch_guess before = {0};
 	double last = tau_of(t, t->levels - 1), above = own->drop - b->posture.gap_drop;
 	rs_limit_search(&b->posture, t->deepest * last * last / own->cosine + above);
 	int known = 0;
 	for (int level = 1; level < t->levels; level++) {
 		double tau = tau_of(t, level), normal = t->deepest * tau * tau, depth = normal / own->cosine + above;
-		int status = rs_patch_fields(&b->posture, &b->influence, b->modulus, part, depth, normal, length, field_node(t, zone, shift, roll, level));
+		int status = rs_patch_fields(&b->posture, &b->influence, b->modulus, part, depth, normal, &before, field_node(t, zone, shift, roll, level));
 		if (status == RS_OK && !known)
 			known = level;
 		else if (status != RS_OK && known)

@@ -7,17 +7,13 @@
  * A strip of half length a and width w under p0 sqrt(1 - x^2/a^2) bends the half-space at (0, d) from its
  * middle by p0 a/(pi E') [H((d + w/2)/a) - H((d - w/2)/a)] (Boussinesq; K. L. Johnson, Contact Mechanics, 1985, 3.19).
  *
- * H is kept as cubics on PARTS intervals of every octave, found by the bits of v: no logarithm when it is read.
+ * H is kept as cubics on PARTS intervals of every octave, with half its slope; rs_influence_at reads them.
  */
 #include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "strips.h"
 
 #define HALF_PI 1.57079632679489661923
-#define PART_BITS 4
-#define LOWEST (1023 - RS_INFLUENCE_BELOW) /* biased exponent of the first octave */
 
 /* K(m) - E(m) for m = 1 - c^2 by the arithmetic-geometric mean: K = pi/(2 M), E = K [1 - sum 2^(n-1) c_n^2]. */
 static double difference_of_integrals(double m)
@@ -62,29 +58,11 @@ void rs_influence_make(rs_influence *table)
 		c[1] = h * g0;
 		c[2] = 3.0 * rise - h * (2.0 * g0 + g1);
 		c[3] = h * (g0 + g1) - 2.0 * rise;
+		for (int n = 1; n < 4; n++)
+			c[3 + n] = 0.5 * n * c[n] / h;
 		v = next;
 		g0 = g1;
 		value += rise;
 	}
 	table->highest = v;
-}
-
-double rs_influence_at(const rs_influence *table, double v)
-{
-	double size = fabs(v);
-	if (size < table->lowest)
-		return v * table->first_slope;
-	if (!(size < table->highest)) /* G = pi/(2 v) */
-		return copysign(table->c[RS_INFLUENCE_SIZE - 1][0] + table->c[RS_INFLUENCE_SIZE - 1][1] +
-		                    table->c[RS_INFLUENCE_SIZE - 1][2] + table->c[RS_INFLUENCE_SIZE - 1][3] +
-		                    HALF_PI * log(size / table->highest), v);
-	uint64_t bits;
-	memcpy(&bits, &size, sizeof bits);
-	int k = (int)(bits >> (52 - PART_BITS)) - (LOWEST << PART_BITS);
-	uint64_t mantissa = (bits << (12 + PART_BITS)) >> 12 | (uint64_t)1023 << 52;
-	double t;
-	memcpy(&t, &mantissa, sizeof t);
-	t -= 1.0;
-	const double *c = table->c[k];
-	return copysign(c[0] + t * (c[1] + t * (c[2] + t * c[3])), v);
 }

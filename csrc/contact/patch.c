@@ -7,6 +7,7 @@
  *   a = sum q a / sum q over 9 pi/32 (exact for an ellipse),  b so that pi a b is the area
  */
 #include <math.h>
+#include <string.h>
 
 #include "posture.h"
 
@@ -120,35 +121,49 @@ static void gather(const rs_strip_patch *strips, const strip_place *place, const
 	field[RS_WIDTH] = area / (PI * a) / root;
 }
 
-int rs_patch_fields(const rs_posture *p, const rs_influence *influence, double modulus, rs_zone zone, double depth, double normal,
-                    double *length, double *field)
+/* Straight on over the root of the penetration from the two patches before; from one, in proportion to the root; from none, half
+ * of where the surfaces would cut. */
+static void guess_lengths(rs_strip_patch *strips, const rs_patch_guess *g, double root)
 {
-	rs_strip_patch strips;
+	double step = g->known < 2 ? 0.0 : (root - g->root[0]) / (g->root[0] - g->root[1]);
+	for (int j = 0; j < RS_STRIPS; j++) {
+		double last = g->length[0][j], scaled = g->known ? last * root / g->root[0] : 0.0;
+		if (!g->known)
+			strips->a[j] = strips->u[j] > 0.0 ? sqrt(0.5 * strips->u[j] / strips->curvature) : 0.0;
+		else
+			strips->a[j] = g->known < 2 ? scaled : fmax(last + step * (last - g->length[1][j]), 0.5 * scaled);
+	}
+}
+
+static void keep_lengths(const rs_strip_patch *strips, double root, rs_patch_guess *g)
+{
+	memcpy(g->length[1], g->length[0], sizeof g->length[0]);
+	memcpy(g->length[0], strips->a, sizeof g->length[0]);
+	g->root[1] = g->root[0];
+	g->root[0] = root;
+	g->known = g->known < 2 ? g->known + 1 : 2;
+}
+
+int rs_patch_fields(const rs_posture *p, const rs_influence *influence, double modulus, rs_zone zone, double depth, double normal,
+                    rs_patch_guess *guess, double *field)
+{
+	rs_strip_patch strips = {.modulus = modulus};
 	strip_place place[RS_STRIPS];
 	runs found;
 	find_runs(p, depth, zone, &found);
 	if (!found.count || !(found.total > 0.0))
 		return RS_NOT_CONVERGED;
 	lay_strips(p, &found, depth, &strips, place);
-	double most = 0.0;
 	int top = 0;
-	for (int j = 0; j < RS_STRIPS; j++)
-		if (strips.u[j] > most) {
-			most = strips.u[j];
-			top = j;
-		}
-	if (!(most > 0.0))
+	for (int j = 1; j < RS_STRIPS; j++)
+		top = strips.u[j] > strips.u[top] ? j : top;
+	if (!(strips.u[top] > 0.0))
 		return RS_NOT_CONVERGED;
-	strips.modulus = modulus;
 	strips.curvature = 0.5 / (rs_wheel_radius(p->from, place[top].across) * sqrt(1.0 + place[top].slope * place[top].slope));
-	double root = sqrt(normal);
-	int guessed = length[top] > 0.0;
-	for (int j = 0; j < RS_STRIPS; j++)
-		strips.a[j] = guessed ? length[j] * root : strips.u[j] > 0.0 ? sqrt(0.5 * strips.u[j] / strips.curvature) : 0.0;
+	guess_lengths(&strips, guess, sqrt(normal));
 	if (rs_strip_contact(influence, &strips) != RS_OK)
 		return RS_NOT_CONVERGED;
-	for (int j = 0; j < RS_STRIPS; j++)
-		length[j] = strips.a[j] / root;
+	keep_lengths(&strips, sqrt(normal), guess);
 	gather(&strips, place, p, normal, field);
 	return RS_OK;
 }

@@ -21,6 +21,13 @@ typedef struct {
 	double low, high;              /* m, places on the wheel */
 } rs_zone;
 
+/* Half lengths of the strips (m) of the last patches of a zone, the last one first, and the roots of their normal penetrations:
+ * the next deeper one is guessed from them. */
+typedef struct {
+	int known;
+	double root[2], length[2][RS_STRIPS];
+} rs_patch_guess;
+
 /* surfaces.c */
 void rs_rail_at(const rs_surfaces *from, double place, double *Y, double *Z);
 double rs_gap_at(const rs_posture *p, double Y, double Z, double *across, double *slope);
@@ -35,8 +42,8 @@ double rs_close_zone(rs_posture *p, rs_zone zone);
 void rs_limit_search(rs_posture *p, double depth);
 
 /* patch.c: fields of a zone lowered by depth (m, vertical) from where it touches; normal (m): the same along the normal;
- * length: half lengths of the strips over sqrt(normal), a guess (zeros: none) and what was found. */
+ * guess: the patches before; this one is added. */
 int rs_patch_fields(const rs_posture *p, const rs_influence *influence, double modulus, rs_zone zone, double depth, double normal,
-                    double *length, double *field);
+                    rs_patch_guess *guess, double *field);
 
 #endif
