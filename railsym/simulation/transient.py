@@ -21,7 +21,7 @@ from railsym.simulation.failure import ending_of
 from railsym.simulation.speed import SpeedProfile
 
 RHO = 0.9          # of the generalised-alpha scheme: what is left in a step of a motion much faster than it
-TOLERANCE = 1e-2   # m/s^2: on irregular track an eighth or less of what a step of 1 ms leaves wrong (docs/simulation.md)
+TOLERANCE = 1e-2   # m/s^2: on irregular track a fifth or less of what a step of 1 ms leaves wrong, a third for Q (docs/simulation.md)
 _BLOCK = 0.5       # s of motion between two looks at the keyboard and the progress bar
 _ENOUGH = 500      # samples that wait before channels are made of them (and written)
 
