@@ -141,7 +141,7 @@ def test_tilt_runs_are_those_of_the_tilting_study(tmp_path):
     from railsym.studies.tilt import make_scene
 
     vehicle = rs.load_vehicle("pendolino_tilting").configured("AS_K")
-    track = rs.track.Track.curve(500.0, 60.0, transition=50.0, cant=0.1, before=30.0, after=50.0)
+    track = rs.track.Track.curve(500.0, 20.0, transition=40.0, cant=0.1, before=30.0, after=45.0)
     track.to_toml(tmp_path / "curve.toml")
     analysis = sweep.Tilt(track=str(tmp_path / "curve.toml"), active=False)
     results = run(tmp_path, "pendolino_tilting", analysis, {"speed": sweep.List([105.0], unit="km/h")}, configuration="AS_K")

@@ -73,6 +73,7 @@ def watched(study, path, client, call):
         return study.run(path, executor=client)
 
 
+@pytest.mark.slow
 def test_a_case_that_ends_every_dask_worker_is_recorded(client, tmp_path):
     results = study(tmp_path, 20, die=(5.0,)).run(tmp_path / "r.nc", executor=client)
     assert list(results.errors) == [5] and "ended without a word" in results.errors[5]

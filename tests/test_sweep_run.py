@@ -245,6 +245,7 @@ def test_a_worker_that_is_lost_once_costs_no_case(tmp_path):
 def test_workers_that_never_finish_a_case_stop_the_study(tmp_path):
     with pytest.raises(sweep.WorkersLostError, match="before any case is finished"):
         logged(tmp_path, 20, die=tuple(map(float, range(20)))).run(tmp_path / "r.nc", workers=2)
+    assert (sweep.load(tmp_path / "r.nc").status == "missing").all()         # it is not the cases' fault
 
 
 def test_an_executor_of_ones_own(tmp_path):

@@ -170,9 +170,14 @@ class _Dispatcher:
         """After workers were lost: every case that was under way, with nothing else under way, so that the one that ends them is known."""
         self.place.renew()
         chunks, self.suspects = self.suspects, []
+        lost = []                        # not the cases' fault before any case is done
         for cases, rows in chunks:
             for k in range(len(cases)):
-                yield self._alone(cases[k:k + 1], rows[k:k + 1])
+                lost.append(self._alone(cases[k:k + 1], rows[k:k + 1]))
+                if self.done:
+                    yield from lost
+                    lost = []
+        yield from lost
         self.sent = 0                    # the next workers are new
 
     def _alone(self, cases, rows):
@@ -180,11 +185,13 @@ class _Dispatcher:
             chunk = self.place.submit(run_chunk, self.key, self.version, self.payload, cases, rows, "alone").result()
         except (BrokenExecutor, CancelledError) as error:
             self._given_up(error)
-            self.place.renew()
-            return self._blamed(cases)
+            chunk = None
         except Exception as error:
             if not is_lost_worker(error):
                 raise
+            chunk = None
+        if chunk is None:
+            self.place.renew()
             return self._blamed(cases)
         self.done += 1
         return chunk

@@ -15,6 +15,11 @@ _SECTION = "track.sections."
 _IRREGULARITY = "track.irregularity_"
 
 
+def part_of(settings, prefix):
+    """Settings of a kind, as a key: pairs of name and value."""
+    return tuple(sorted((name, value) for name, value in settings.items() if name.startswith(prefix)))
+
+
 def contact_inputs_of(analysis, vehicle):
     """Inputs ``contact.*``: of the linear contact, or of the pair of profiles."""
     if analysis.conicity is not None:
@@ -67,7 +72,8 @@ def track_for(analysis, vehicle, settings, speed):
         longest = track.length / speed - 2.0 * analysis.step     # the foremost body begins at s = 0 and stays on the track
         duration = longest if duration is None else duration
         if duration > longest:
-            raise SweepError(f"transient: track {track.name!r} is {track.length:.6g} m long, and {duration:g} s at {speed:.4g} m/s take {speed * duration:.6g} m")
+            raise SweepError(f"transient: track {track.name!r} is {track.length:.6g} m long, and {duration:g} s at {speed:.4g} m/s take "
+                             f"{speed * duration:.6g} m")
     elif analysis.irregularity is not None:
         track = Track.straight(ahead + speed * duration + _AHEAD)
     if analysis.irregularity is not None:

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from railsym.sweep.analysis import Analysis, Output, option
-from railsym.sweep.run_surroundings import contact_for, contact_inputs_of, track_for, track_inputs
+from railsym.sweep.run_surroundings import contact_for, contact_inputs_of, part_of, track_for, track_inputs
 from railsym.sweep.space import Input
 
 _CONTROL = "tilt."
@@ -82,12 +82,11 @@ class Tilt(Analysis):
 
     def solver(self, vehicle):
         contacts = lru_cache(maxsize=4)(lambda settings: contact_for(self, vehicle, dict(settings)))
-        part = lambda case, prefix: tuple(sorted((k, v) for k, v in case.settings.items() if k.startswith(prefix)))  # noqa: E731
 
         def solve(case):
             speed = case.settings.get("speed", self.speed)
-            contact, options = contacts(part(case, "contact."))
-            track, _ = track_for(self, case.vehicle, dict(part(case, "track.")), speed)
+            contact, options = contacts(part_of(case.settings, "contact."))
+            track, _ = track_for(self, case.vehicle, dict(part_of(case.settings, "track.")), speed)
             scene = _scene(case.vehicle, track, contact, speed, {"dt": self.step} | options)
             return _read(self._case(scene, case.settings))
 

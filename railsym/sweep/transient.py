@@ -11,7 +11,7 @@ import numpy as np
 from railsym.sweep.analysis import Analysis, Output, option
 from railsym.sweep.errors import SweepError, unknown
 from railsym.sweep.run_criteria import CRITERIA
-from railsym.sweep.run_surroundings import contact_for, contact_inputs_of, track_for, track_inputs
+from railsym.sweep.run_surroundings import contact_for, contact_inputs_of, part_of, track_for, track_inputs
 from railsym.sweep.space import Input
 
 _RATE = 200.0          # Hz: comfort and derailment need it
@@ -96,8 +96,8 @@ class Transient(Analysis):
 
         def solve(case):
             speed = case.settings.get("speed", self.speed)
-            contact, more = contacts(_part(case.settings, "contact."))
-            track, duration = tracks(_part(case.settings, "track."), speed)
+            contact, more = contacts(part_of(case.settings, "contact."))
+            track, duration = tracks(part_of(case.settings, "track."), speed)
             initial = {name[len(_INITIAL):]: value for name, value in case.settings.items() if name.startswith(_INITIAL)}
             return self._judged(_run(case.vehicle, place, speed=speed, duration=duration, track=track, contact=contact, dt=self.step, rate=_RATE,
                                      initial=initial or None, **more), place)
@@ -109,11 +109,6 @@ class Transient(Analysis):
         for name in self.criteria:
             found |= CRITERIA[name].judge(run, place)
         return found
-
-
-def _part(settings, prefix):
-    """Settings of a kind, as a key."""
-    return tuple(sorted((name, value) for name, value in settings.items() if name.startswith(prefix)))
 
 
 def _run(vehicle, place, **options):
