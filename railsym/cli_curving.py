@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import re
 import sys
 
@@ -14,6 +15,7 @@ from railsym.cli_values import CommandError, quantity
 
 _MOST = 200
 _DEFICIENCY = 0.1     # m, of a coach
+_LINEAR = ("amplitude", "load")  # options of linear contact, refused
 
 
 def add_curving(commands, typed, add_vehicle, add_output):
@@ -33,6 +35,8 @@ def add_curving(commands, typed, add_vehicle, add_output):
     command.add_argument("--direction", choices=("right", "left"), default="right", help="of the curves (default right)")
     command.add_argument("--configuration", metavar="NAME", help="configuration of the vehicle file (default: its first)")
     add_contact(command, typed)
+    for name in _LINEAR:
+        command._option_string_actions[f"--{name}"].help = argparse.SUPPRESS
     command.add_argument("--law", metavar="NAME", help="creep law (default fastsim)")
     command.add_argument("--dynamic", action="store_true", help="also run through every curve, with irregularities")
     command.add_argument("--irregularity", metavar="NAME", help="of --dynamic: spectrum (default erri_b176_low), or a CSV file of measured irregularities")
@@ -71,7 +75,7 @@ def run(options):
 def _check(options):
     if options.speed is not None and options.cant_deficiency is not None:
         raise CommandError("--speed and --cant-deficiency: one follows from the other; give one of the two")
-    for name in ("amplitude", "load"):
+    for name in _LINEAR:
         if getattr(options, name) is not None:
             raise CommandError(f"--{name} belongs to linear contact: curving takes the contact of the profiles as it is")
     if not options.dynamic:

@@ -8,7 +8,7 @@ import pytest
 
 import railsym as rs
 from railsym.conical_contact import Cone
-from railsym.errors import SimulationError
+from railsym.errors import SimulationError, TrackError
 
 BOGIE = rs.load_vehicle("bogie").configured("with_anti_yaw_dampers")
 CONES = rs.ConicalContact(zones=(Cone(0.1),))
@@ -225,10 +225,11 @@ def test_drawings(pendolino, tmp_path):
     ({"radius": -300.0}, "For a curve to the left"), ({"radius": [300.0, 300.0]}, "each radius once"), ({"cant": 150.0}, "are the units right"),
     ({"cant": [0.1, 0.1, 0.1]}, "one for each of the 2 radii"), ({"speed": 20.0}, "either speed"), ({"cant_deficiency": None}, "either speed"),
     ({"cant_deficiency": -0.2}, "standing still"), ({"cant_deficiency": 100.0}, "are the units right"), ({"contact": rs.LinearContact()}, "needs wheel-rail forces"),
+    ({"dynamic": True, "irregularity": "erri_b176_lo"}, "nearest: 'erri_b176_low'"), ({"dynamic": True, "length": 5.0}, "20 to 2000 m"),
     ({"direction": "up"}, '"right" or "left"'), ({"seed": 1}, "belong to dynamic"), ({"radius": "wide"}, "numbers in m"),
 ])
 def test_bad_input(changes, message):
-    with pytest.raises(SimulationError, match=message):
+    with pytest.raises((SimulationError, TrackError), match=message):
         rs.curving(BOGIE, **({"radius": [300.0, 500.0], "cant": 0.1, "cant_deficiency": 0.05, "contact": CONES} | changes))
 
 

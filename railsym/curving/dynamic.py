@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
+from railsym.criteria.errors import CriterionError
 from railsym.curving.quantities import wheel_names
 from railsym.curving.result import Failure
-from railsym.errors import RailsymError, SimulationError
+from railsym.errors import SimulationError
 from railsym.track import Curve, Straight, Track, Transition
 
 _BEFORE = 50.0           # m of straight before the transition, irregularity fades in over the first 25 m
@@ -48,6 +49,16 @@ class Passage:
         track = Track([Straight(_BEFORE), Transition(transition), Curve(radius, curve, cant, self.direction)], name=f"curve of {radius:g} m")
         return track.with_irregularity(self.irregularity, **self._options()), first, first + self.length
 
+    def check(self, vehicle, asked):
+        """Refuse an irregularity that does not exist or is too short, before anything is computed.
+
+        Raises
+        ------
+        TrackError
+        """
+        for k in {0, int(asked.cant.argmax())}:
+            self.track(vehicle, float(asked.radius[k]), float(asked.cant[k]), float(asked.cant_deficiency[0, k]), float(asked.speed[0, k]))
+
     def _options(self):
         spectrum = isinstance(self.irregularity, (str, Path)) and Path(self.irregularity).suffix.lower() not in (".csv", ".txt")
         return {"seed": 1 if self.seed is None else self.seed} if spectrum else {} if self.seed is None else {"seed": self.seed}
@@ -70,7 +81,7 @@ def run_through(vehicle, wheels, asked, passage, wheelsets, told):
         try:
             for name, values in _judged(vehicle, wheels, asked, j, k, passage, wheelsets).items():
                 largest[name][j, k] = values
-        except RailsymError as error:
+        except (SimulationError, CriterionError) as error:
             failures.append(Failure(j, k, float(asked.radius[k]), float(asked.speed[j, k]), "dynamic", str(error)))
         told()
     return largest, failures

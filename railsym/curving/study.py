@@ -68,14 +68,16 @@ def curving(vehicle, *, radius, cant=0.0, speed=None, cant_deficiency=None, cont
     asked = cases(radius, cant, speed, cant_deficiency, vehicle.gravity)
     wheelsets, loads = _from_the_front(vehicle, wheels)
     values = {name: np.full((*asked.speed.shape, *shape_of(kind, wheelsets)), np.nan) for name, kind in KINDS.items()}
-    failures, largest = [], None
+    failures, largest, passage = [], None, None
+    if dynamic:
+        from railsym.curving.dynamic import Passage, run_through
+
+        passage = Passage(irregularity or IRREGULARITY, seed, length, dt, direction)
+        passage.check(vehicle, asked)
     with _bar(asked.speed.size * (2 if dynamic else 1), progress) as bar:
         for row in range(len(asked.speed)):
             failures += _steady_row(vehicle, wheels, asked, row, direction, wheelsets, values, bar.update)
-        if dynamic:
-            from railsym.curving.dynamic import Passage, run_through
-
-            passage = Passage(irregularity or IRREGULARITY, seed, length, dt, direction)
+        if passage is not None:
             largest, more = run_through(vehicle, wheels, asked, passage, wheelsets, bar.update)
             failures += more
     return Curving(vehicle=vehicle.name, configuration=vehicle.configuration or "", direction=direction, cases=asked, wheelsets=wheelsets,
