@@ -49,6 +49,7 @@ def run(options):
         raise CommandError(f"interrupted; {_kept(campaign, store)}") from None
     if not quiet:
         say(str(found))
+    _no_windows()
     if options.report:
         found.report(options.report)
     if options.figures:
@@ -108,10 +109,13 @@ def _kept(campaign, store):
     return f"{kept}; --resume goes on from there"
 
 
-def _save_figures(found, folder):
+def _no_windows():
     import matplotlib
 
     matplotlib.use("Agg")
+
+
+def _save_figures(found, folder):
     from railsym.plots.style import save
 
     try:

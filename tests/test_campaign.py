@@ -94,6 +94,11 @@ def test_the_study_is_the_engines(run):
     assert np.array_equal(again["speed"], found.results["speed"]) and len(again) == 24 and found.results.complete
 
 
+def test_the_file_is_the_studys_too(run):
+    """`Study.load` takes the file and leaves what is made of the results aside."""
+    assert rs.Study.load(run[0] / "small.toml").hash == run[1].results.study.hash
+
+
 def test_uncertainty_agrees_with_itself(run):
     """Count, first-order estimate and deviation of one study tell of the same spread."""
     u = run[1].uncertainty
@@ -274,7 +279,7 @@ def test_command_refuses_before_it_computes(arguments, text, tmp_path, capsys, m
     ("recheck = true", "generations = 3", "with several objectives"),
     ("recheck = true", 'method = "newton"', "gradient, simplex, global"),
     ("conicity = 0.4", "conicty = 0.4", "conicty"),
-    ("[optimise.trade]", "[optimize.trade]", "optimize"),
+    ("[optimise.trade]", "[optimize.trade]", "optimise"),
 ])
 def test_what_a_file_cannot_say_is_named(old, new, text, tmp_path):
     assert old in WHOLE

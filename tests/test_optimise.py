@@ -323,3 +323,55 @@ def test_designs_from_a_study_are_its_cases():
         design_of(study, names, {"": CriticalSpeed(speed_range=(1.2 * speed, 2.0 * speed))})(x)
     with pytest.raises(OptimisationError, match="anti_yaw_damper.damping"):
         design_of(study, ("anti_yaw_damper.dampin",))
+
+
+KILLED = """
+import sys, time
+sys.path.insert(0, {tests!r})
+from test_optimise import Schaffer, schaffer
+from railsym.optimise import pareto_front
+
+class Slow(Schaffer):
+    def __call__(self, x):
+        time.sleep(0.02)
+        return super().__call__(x)
+
+found = pareto_front(schaffer(Slow()), population=8, generations=6, seed=4, history={path!r}, resume=True)
+print(found.computed, flush=True)
+"""
+
+
+def test_killed_and_resumed_is_the_same(tmp_path):
+    """SIGKILL at three places of the history: nothing that was written is computed again, and the front is that of an undisturbed run."""
+    import subprocess
+    import sys
+    import time
+    from pathlib import Path
+
+    whole = pareto_front(schaffer(Schaffer()), population=8, generations=6, seed=4, history=tmp_path / "whole")
+    path = tmp_path / "history"
+    code = KILLED.format(tests=str(Path(__file__).parent), path=str(path))
+    lines = 0
+    for target in (7, 20, 33):
+        process = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path, stdout=subprocess.DEVNULL)
+        while process.poll() is None and (not path.exists() or path.read_bytes().count(b"\n") < target):
+            time.sleep(0.005)
+        process.kill()
+        process.wait()
+        kept = path.read_bytes().count(b"\n")
+        assert kept >= target > lines
+        lines = kept
+    found = pareto_front(schaffer(Schaffer()), population=8, generations=6, seed=4, history=path, resume=True)
+    assert found.computed == whole.computed - (lines - 1)      # the first line is the head
+    assert np.array_equal(found.values, whole.values) and found.numbers == whole.numbers
+    assert path.read_bytes() == (tmp_path / "whole").read_bytes()
+
+
+@pytest.mark.slow
+def test_dask_gives_the_same():
+    """Two worker processes of a real scheduler, which are given the problem once each."""
+    distributed = pytest.importorskip("distributed")
+    alone = pareto_front(schaffer(Mortal()), population=8, generations=3)
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, distributed.Client(cluster) as client:
+        found = pareto_front(schaffer(Mortal()), population=8, generations=3, executor=client)
+    assert np.array_equal(found.values, alone.values) and found.failed == 0

@@ -9,12 +9,12 @@ from pathlib import Path
 from railsym.campaign.campaign import Campaign
 from railsym.campaign.errors import CampaignError
 from railsym.campaign.optimisation import read as read_optimisation
+from railsym.campaign.tables import known
 from railsym.campaign.uncertainty import read as read_uncertainty
 from railsym.errors import RailsymError
-from railsym.sweep.study_file import from_document
+from railsym.sweep.study_file import _SECTIONS, ON_TOP, from_document
 
 EXAMPLE = Path(__file__).parent.parent / "data" / "studies" / "pendolino_damper.toml"
-_SECTIONS = ("title", "description", "uncertainty", "optimise")
 
 
 def load(path):
@@ -41,8 +41,9 @@ def load(path):
         raise CampaignError(f"study file {path}: {error.strerror}; `railsym study --example` writes one to begin with") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise CampaignError(f"study file {path}: {error}") from None
-    own = {name: content.pop(name) for name in _SECTIONS if name in content}
     try:
+        known("the file:", content, (*_SECTIONS, *ON_TOP))
+        own = {name: content.pop(name) for name in ON_TOP if name in content}
         study = from_document(content, path.parent)
         uncertainty = read_uncertainty(own["uncertainty"], study) if "uncertainty" in own else None
         optimise = own.get("optimise", {})

@@ -26,9 +26,6 @@ def write_report(found, path):
     CampaignError
         If it cannot be written.
     """
-    import matplotlib
-
-    matplotlib.use("Agg")
     text = report(found)
     path = Path(path)
     part = path.with_name(path.name + ".part")

@@ -19,6 +19,7 @@ from railsym.vehicle import vehicles
 
 _INLINE = 2000            # numbers of a table that are written into the file; more go into a file beside it
 _SECTIONS = ("study", "analysis", "factors", "plan", "set")
+ON_TOP = ("title", "description", "uncertainty", "optimise")      # what `railsym.campaign` makes of the results
 _STUDY = ("vehicle", "configuration", "seed", "keep")
 
 
@@ -123,7 +124,7 @@ def load(path):
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise SweepError(f"study file {path}: {error}") from None
     try:
-        return from_document(content, path.parent)
+        return from_document({name: table for name, table in content.items() if name not in ON_TOP}, path.parent)
     except SweepError as error:
         raise SweepError(f"study file {path}: {error}") from None
 
