@@ -165,7 +165,8 @@ def test_the_report_says_where_numbers_come_from(run):
     for path in (*found.files.values(), found.campaign.study.path):
         assert file_hash(path) in text and path.name in text
     assert found.results.study.hash in text and "seed3" in text.replace("\n", "") and rs.__version__ in text
-    assert found.campaign.study.base().parameters["primary.stiffness"].origin[:40] in text and "assumed" in text
+    origin = found.campaign.study.base().parameters["primary.stiffness"].origin
+    assert origin[:40] in text and origin[-40:] in text and "assumed" in text
     mean = found.results["speed"].mean() * 3.6
     assert f"{mean:.4g}" in text and f"{found.optimised[0].found.objective * 3.6:.4g}" in text
     assert f"case {int(found.results['speed'].argmin())}" in text

@@ -16,6 +16,7 @@ from railsym.campaign.results import extremes, summary
 from railsym.plots.units import shown
 
 _MOST_ROWS = 1000      # cases listed; a page of more is slow to open
+_LONG = 90             # characters of an origin that are shown at once
 
 
 def write_report(found, path):
@@ -212,11 +213,19 @@ def _factors(found, sources):
         text, assumed = provenance.origin(study, name)
         kind = ", ".join(f"{key} {_plain(value)}" for key, value in factor_to_table(factor).items())
         own = study.space.nominal[k] if not study.space.labels(k) else float("nan")
-        rows.append([name, *_in_unit(study.units[k], own), kind, Raw('<span class="assumed">assumed</span>' if assumed else "given"), text])
+        rows.append([name, *_in_unit(study.units[k], own), kind, Raw('<span class="assumed">assumed</span>' if assumed else "given"), _folded(text)])
     count, total = provenance.assumed_share(study.base())
     return (f"<p>Values as the vehicle file {mark(sources['vehicle'])} has them, and their distributions as the study file says. Of the {total} quantities of the "
             f"vehicle (places left out) {count} are marked as assumed there: every result rests on them.</p>\n"
-            + table(["factor", "own value", "unit", "distribution", "data", "origin in the vehicle file"], rows, css=("", "", "", "", "", "long")))
+            + table(["factor", "own value", "unit", "distribution", "data", "origin in the vehicle file"], rows, css=("", "", "", "mid", "", "long")))
+
+
+def _folded(text):
+    """A long text opens on a click."""
+    if len(text) <= _LONG:
+        return text
+    cut = text.rfind(" ", 0, _LONG)
+    return Raw(f"<details><summary>{escape(text[:cut])} ...</summary>{escape(text[cut + 1:])}</details>")
 
 
 def _plain(value):

@@ -151,7 +151,8 @@ class _Run:
         found = differential_evolution(objective, [(0.0, 1.0)] * len(self.problem.variables), init="sobol", popsize=population, maxiter=self.most,
                                        tol=max(self.tolerance, 1e-4), polish=False, vectorized=True, updating="deferred",
                                        **{word: np.random.default_rng(seed)}, **options)
-        return self.result(_NAMES["global"], bool(found.success), str(found.message).rstrip("."), start)
+        message = f"{found.nit} generations, " + ("converged" if found.success else "stopped there: more may find more")
+        return self.result(_NAMES["global"], bool(found.success), message, start)
 
     def _signed(self, outputs):
         objective = self.problem.objectives[0]
