@@ -3,8 +3,10 @@
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -127,6 +129,18 @@ def test_what_is_not_a_number_is_named_wherever_it_is():
         simulation.run(0.01)
         run = simulation.result()
         assert run.status == "not_converged" and said in run.message and len(run) == 11
+
+
+def test_ctrl_c_returns_what_was_computed():
+    """The signal comes while C is at work: every sample up to the time at which the run says it was interrupted is there."""
+    simulation = Simulation(BOGIE, speed=40.0, contact=CONES, channels="*.y", rate=1000.0)
+    timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    simulation.run(3600.0)
+    timer.join()
+    run = simulation.result()
+    assert run.status == "interrupted" and run.info.ending.time > 0.4 and len(run) == run.info.extra["counts"]["steps"] + 1
+    assert run.time[-1] == pytest.approx(run.info.ending.time, abs=1e-9)
 
 
 def test_irregularities_shorter_than_the_run(tmp_path):

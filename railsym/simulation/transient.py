@@ -121,10 +121,14 @@ class Simulation:
         done = integrator.report.steps
         rows = (done + count) // self.every - done // self.every
         samples = np.empty((rows, len(self.recorder.raw)))
-        status, sampled = integrator.run(count, self.every, samples)
-        times = (done // self.every + 1 + np.arange(sampled)) * self.every * self.dt
-        self._waiting.append((times, samples[:sampled]))
-        self._waiting_samples += sampled
+        status = 0
+        try:
+            status, _ = integrator.run(count, self.every, samples)
+        finally:  # Ctrl-C while C was at work shows when it has come back: what it sampled is kept
+            sampled = integrator.report.steps // self.every - done // self.every
+            times = (done // self.every + 1 + np.arange(sampled)) * self.every * self.dt
+            self._waiting.append((times, samples[:sampled]))
+            self._waiting_samples += sampled
         if status:
             self.ending = ending_of(self.parts, status)
             if status == STOPPED and integrator.why is not None and (error := integrator.why()) is not None:
