@@ -110,7 +110,7 @@ class _Stage:
             section.show(k)
         self.now.set_xdata([s, s])
         V = float(np.interp(self.times[k], case.run.time, case.run["V"]))
-        self.title.set_text(f"t = {self.times[k]:5.2f} s   s = {s:6.1f} m   {3.6 * V:.0f} km/h   seen from behind, true to scale")
+        self.title.set_text(f"t = {self.times[k]:5.2f} s   s = {s:6.1f} m   {3.6 * V:.0f} km/h   seen from behind; bar: pull on a passenger")
         self.figure.canvas.draw()
         return np.asarray(self.figure.canvas.buffer_rgba()).copy()
 

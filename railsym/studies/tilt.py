@@ -20,7 +20,8 @@ from railsym.tilt.plant import leading_frame, steps_between
 
 SPEED = 105.0 / 3.6        # m/s, the paper
 COACH = 25.9               # m, of a coach over its couplers (assumed: usual for the class): the leading vehicle's distance
-QUIET = 0.7                # Hz, of the gyroscope where it makes the estimate
+QUIET = 0.5                # Hz, of the gyroscope where it makes the estimate: a third of the body's sway, which comes back through the roll of the bogie
+EARLY = 0.25               # of that filter's delay: what the estimate of a transition of 2 to 3 s comes late by (found by trial)
 OFFSET = 5.0               # m, error of the database's place (assumed: odometer corrected by balises)
 
 
@@ -163,9 +164,10 @@ def _late(parameters):
 def detecting(parameters):
     """The parameters with the complementary estimate, called where the vehicle's middle is: it is early enough for that.
 
-    The gyroscope is filtered below the body's sway at 1.5 Hz, which otherwise comes back through the roll of the bogie.
+    A slow change it does not delay at all, a quick one by its gyroscope's filter.
     """
-    return parameters.with_(estimator="complementary", gyro_cutoff=QUIET, source="leading", lead=parameters.latency + parameters.follow_delay)
+    quiet = parameters.with_(estimator="complementary", gyro_cutoff=QUIET, source="leading")
+    return quiet.with_(lead=EARLY * quiet.filter_delay(QUIET) + quiet.latency + quiet.follow_delay)
 
 
 def behind(parameters, distance):
