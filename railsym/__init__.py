@@ -53,10 +53,11 @@ _MODULE_OF = {
     "stability_map": "stability_map",
     "steady_state": "simulation",
     "switch_study": "studies",
+    "tilt_study": "studies",
     "track_modes": "tracking",
     "vehicles": "vehicle",
 }
-_SUBMODULES = ("criteria", "dampers", "nonlinear", "optimise", "plots", "results", "simulation", "studies", "sweep", "track", "uncertainty")
+_SUBMODULES = ("criteria", "dampers", "nonlinear", "optimise", "plots", "results", "simulation", "studies", "sweep", "tilt", "track", "uncertainty")
 
 _get, __dir__, _names = lazy(__name__, _MODULE_OF, _SUBMODULES)
 __all__ = [*_names, "__version__"]

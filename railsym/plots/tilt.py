@@ -83,7 +83,7 @@ def _demand(axes, study):
     low, high = _span(study)
     for case in study.cases[1:]:
         inside = (_place(case) > low) & (_place(case) < high)
-        axes.plot(_place(case)[inside], np.degrees(case.tilt[inside]), color=_COLOUR.get(case.name, GREY), linewidth=1.3, label=f"{case.name}: lag {case.delay:+.2f} s")
+        axes.plot(_place(case)[inside], np.degrees(case.tilt[inside]), color=_COLOUR.get(case.name, GREY), linewidth=1.3, label=f"{case.name}: lag {round(case.delay, 2) + 0.0:+.2f} s")
     active = study["active"]
     inside = (_place(active) > low) & (_place(active) < high)
     axes.plot(_place(active)[inside], np.degrees(active.ideal[inside]), color=BLACK, linewidth=1.1, linestyle="--", label="ideal")

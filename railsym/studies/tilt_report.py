@@ -44,7 +44,10 @@ def control_text(p):
 
 def number(value, form):
     """Formatted, or -- where there is none."""
-    return "--" if value is None or not np.isfinite(value) else format(value, form)
+    if value is None or not np.isfinite(value):
+        return "--"
+    text = format(value, form)
+    return text.lstrip("-") if float(text) == 0.0 else text
 
 
 def passengers(study):
@@ -111,7 +114,7 @@ def fault_table(study):
     for case in study.faults:
         said = "; ".join(dict.fromkeys(f"{r.fault.name.lower()} at {r.time:.2f} s" for r in case.reports)) or "none reported"
         rows.append([case.name, case.text, said, case.end, f"{max(case.ride[p]['peak'] for p in ('front', 'middle', 'rear')):.2f}",
-                     f"{np.degrees(np.abs(case.tilt).max()):.2f}", f"{round(np.degrees(case.tilt[-1]), 2) + 0.0:.2f}", f"{case.rails['Y/Q']:.3f}", f"{100.0 * case.rails['unloading']:.0f}"])
+                     f"{np.degrees(np.abs(case.tilt).max()):.2f}", number(np.degrees(case.tilt[-1]), ".2f"), f"{case.rails['Y/Q']:.3f}", f"{100.0 * case.rails['unloading']:.0f}"])
     return table(["case", "", "reported", "ends", "floor, peak m/s^2", "tilt, deg", "tilt at the end", "Y/Q", "unloading, %"], rows, left=(0, 1, 2, 3))
 
 
