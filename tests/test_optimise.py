@@ -5,6 +5,7 @@ At a fixed hunting frequency w the critical speed of the closed form is lowest w
 k1 = m w^2, k2 = I w^2, and is w sqrt(b0 r0/lam) there (equation 4 of tests/oracles/wheelset_closed_form.py).
 """
 
+import json
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from math import pi, sqrt
@@ -168,11 +169,38 @@ def test_interrupted_and_resumed_is_the_same(tmp_path):
     assert longer.computed == longer.evaluations - whole.evaluations
 
 
-def test_any_executor_gives_the_same(tmp_path):
-    alone = pareto_front(schaffer(Schaffer()), population=8, generations=4)
+class Uneven(Schaffer):
+    """The later a case is asked for, the sooner it ends, more or less."""
+
+    def __call__(self, x):
+        import time
+
+        time.sleep(0.02 * abs(np.sin(1e3 * x[0])))
+        return super().__call__(x)
+
+
+def test_any_executor_gives_the_same_bytes(tmp_path):
+    alone = pareto_front(schaffer(Schaffer()), population=8, generations=4, history=tmp_path / "alone")
     with ThreadPoolExecutor(3) as pool:
-        together = pareto_front(schaffer(Schaffer()), population=8, generations=4, executor=pool, history=tmp_path / "h")
+        together = pareto_front(schaffer(Uneven()), population=8, generations=4, executor=pool, history=tmp_path / "together")
     assert np.array_equal(alone.values, together.values) and alone.numbers == together.numbers
+    assert (tmp_path / "alone").read_bytes() == (tmp_path / "together").read_bytes()
+
+
+def test_cases_keep_their_numbers_when_others_ended_first(tmp_path):
+    """Of a run killed in the middle of a generation the 2nd, 5th and 3rd case are there, in this order."""
+    whole = pareto_front(schaffer(Schaffer()), population=8, generations=3, history=tmp_path / "whole")
+    head, *lines = (tmp_path / "whole").read_bytes().splitlines(keepends=True)
+    (tmp_path / "part").write_bytes(head + lines[1] + lines[4] + lines[2])
+    found = pareto_front(schaffer(Schaffer()), population=8, generations=3, history=tmp_path / "part", resume=True)
+    assert found.numbers == whole.numbers and found.computed == whole.computed - 3
+    assert (tmp_path / "part").read_bytes() == (tmp_path / "whole").read_bytes()
+    # another seed asks for other cases: they get numbers of their own
+    other = pareto_front(schaffer(Schaffer()), population=8, generations=3, seed=9, history=tmp_path / "part", resume=True)
+    numbers = [case.number for case in other.cases]
+    assert len(set(numbers)) == len(numbers) and max(numbers) > whole.evaluations
+    for line in (tmp_path / "part").read_bytes().splitlines()[1:]:
+        assert numbers.count(json.loads(line)["case"]) <= 1
 
 
 def test_histories_that_cannot_be_used_are_refused(tmp_path):

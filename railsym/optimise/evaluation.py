@@ -33,7 +33,7 @@ class Evaluations:
     def __init__(self, problem, history: History, executor=None, follow=None):
         self.problem, self.history, self.follow = problem, history, follow
         self.executor = executor.get_executor() if hasattr(executor, "get_executor") else executor
-        self.computed, self._asked, self._next = 0, {}, 1 + max((case.number for case in history.cases), default=0)
+        self.computed, self._asked, self._ranks = 0, {}, {}
         self._carried = None
 
     @property
@@ -44,9 +44,10 @@ class Evaluations:
     def many(self, points, gradient=False):
         """Cases at several values (SI), in their order."""
         keys = [tuple(map(float, point)) for point in points]
+        for key in keys:
+            self._ranks.setdefault(key, len(self._ranks) + 1)
         missing = [key for key in dict.fromkeys(keys) if self.history.find(key, gradient) is None]
-        numbers = dict(zip(missing, range(self._next, self._next + len(missing))))
-        self._next += len(missing)
+        numbers = {key: self.history.number(key, self._ranks[key]) for key in missing}
         for key, found in self._run(missing, gradient):
             case = Case(numbers[key], key, *found)
             self.history.add(case)

@@ -12,8 +12,6 @@ import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
 from railsym.optimise.errors import OptimisationError
 
 
@@ -24,7 +22,7 @@ class Case:
     Attributes
     ----------
     number : int
-        In the order in which cases were asked for.
+        In the order in which cases were asked for, whichever ended first.
     values : tuple of float
         SI.
     outputs : dict of str to float, or None
@@ -63,7 +61,8 @@ class History:
     """
 
     def __init__(self, problem, path=None, resume=False):
-        self.cases, self._by_values, self._file = [], {}, None
+        self.cases, self._by_values, self._numbers, self._file = [], {}, {}, None
+        self._lines = []      # of the file
         self.path = None if path is None else Path(path)
         if self.path is None:
             return
@@ -103,6 +102,17 @@ class History:
                                     "analysis; name another file")
         for case in cases:
             self._remember(case)
+            self._numbers[case.number] = case.values
+        self._lines = [line + b"\n" for line in lines]
+
+    def number(self, values, rank):
+        """Number of a case that is the `rank`-th to be asked for: that, unless another case has it, as after a change of method."""
+        own = self._by_values.get(values)
+        if own is not None:      # computed anew, with its gradient
+            return own.number
+        number = rank if rank not in self._numbers else 1 + max(self._numbers)
+        self._numbers[number] = values
+        return number
 
     def find(self, values, gradient=False):
         """The case of these values, or None."""
@@ -122,12 +132,30 @@ class History:
         self._by_values[case.values] = case
 
     def _write(self, row):
+        line = json.dumps(row, allow_nan=False).encode() + b"\n"
         try:
-            self._file.write(json.dumps(row, allow_nan=False).encode() + b"\n")
+            self._file.write(line)
             self._file.flush()
             os.fsync(self._file.fileno())
         except OSError as error:
             raise OptimisationError(f"history {self.path}: {error.strerror}; the cases before this one are kept") from None
+        self._lines.append(line)
+
+    def sort(self):
+        """Put the lines of the file in the order of their numbers: the same bytes, whichever worker was first."""
+        if self._file is None:
+            return
+        head, *rows = self._lines
+        ordered = sorted(rows, key=lambda line: json.loads(line)["case"])
+        if ordered == rows:
+            return
+        part = self.path.with_name(self.path.name + ".part")
+        try:
+            part.write_bytes(b"".join([head, *ordered]))
+            os.replace(part, self.path)
+        except OSError as error:
+            part.unlink(missing_ok=True)
+            raise OptimisationError(f"history {self.path} was not put in order: {error.strerror}; all cases are in it") from None
 
     def close(self):
         """Let go of the file."""
@@ -140,11 +168,6 @@ class History:
 
     def __exit__(self, *_):
         self.close()
-
-    def table(self, problem):
-        """Values and outputs of the cases that did not fail, in the order of their numbers: (numbers, values (n, k), list of outputs)."""
-        good = sorted((case for case in self.cases if not case.failed), key=lambda case: case.number)
-        return [c.number for c in good], np.array([c.values for c in good]).reshape(len(good), len(problem.variables)), [c.outputs for c in good]
 
 
 def _version():

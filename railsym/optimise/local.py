@@ -70,9 +70,9 @@ def optimise(problem, *, method: str | None = None, history=None, resume: bool =
         raise OptimisationError(f"method 'gradient': the outputs {', '.join(problem.needed)} come without gradients; use 'simplex' or 'global'")
     with History(problem, history, resume) as kept:
         run = _Run(problem, Evaluations(problem, kept, executor, follow), tolerance, most)
-        if method == "global":
-            return run.everywhere(seed, population)
-        return run.near(_slsqp if method == "gradient" else _cobyla, method)
+        found = run.everywhere(seed, population) if method == "global" else run.near(_slsqp if method == "gradient" else _cobyla, method)
+        kept.sort()
+        return found
 
 
 @dataclass

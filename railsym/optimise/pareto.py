@@ -58,6 +58,7 @@ def pareto_front(problem, *, population: int = 40, generations: int = 25, histor
             cases = evaluations.many([problem.values(place) for place in asked.get("X")])
             _tell(algorithm, asked, problem, cases)
             fronts.append(_best(problem, evaluations.order))
+        kept.sort()
         return _result(problem, evaluations, fronts, start)
 
 
