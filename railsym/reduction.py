@@ -82,24 +82,16 @@ class Reduction:
             What the dropped modes add to the full shapes.
         """
         x, y = self.expand(right), self.expand(left)
-        reduced, onto, back = self.model, *self._stacked
-        factor = np.array([eigenvalue**2, eigenvalue, eigenvalue * speed, eigenvalue / speed, np.ones_like(eigenvalue)])[:, None]
-        residual = (factor * real_times(onto, x).reshape(5, *x.shape)).sum(axis=0)
-        left_residual = (factor.conj() * real_times(back, y).reshape(5, *x.shape)).sum(axis=0)
+        full, reduced, conjugate = self.full, self.model, eigenvalue.conj()
+        matrices = full.mass, full.damping(speed), full.stiffness
+        residual = sum(real_times(matrix, x * factor) for matrix, factor in zip(matrices, (eigenvalue**2, eigenvalue, 1.0)))
+        left_residual = sum(real_times(matrix.T, y * factor) for matrix, factor in zip(matrices, (conjugate**2, conjugate, 1.0)))
         own_stiffness, own_damping, own_mass = self.dropped_pencil[:, :, None]
         amplitude = -real_times(self.dropped.T, residual) / (own_stiffness + eigenvalue * own_damping + eigenvalue**2 * own_mass)
         slope = ((reduced.mass @ (right * (2 * eigenvalue)) + reduced.damping(speed) @ right) * left.conj()).sum(axis=0)
         lag = eigenvalue**2 * ((self.lag @ right) * left.conj()).sum(axis=0)
         change = (lag - (real_times(self.dropped.T, left_residual).conj() * amplitude).sum(axis=0)) / slope
         return change, real_times(self.dropped, amplitude)
-
-
-    @cached_property
-    def _stacked(self):
-        """M, C0, C1, C2 and K of the full model one below the other, and their transposes, (5 n, n)."""
-        full = self.full
-        matrices = full.mass, full.damping_constant, full.damping_speed, full.damping_inverse_speed, full.stiffness
-        return np.vstack(matrices), np.vstack([matrix.T for matrix in matrices])
 
 
 def real_times(matrix, values):

@@ -274,7 +274,7 @@ def scan_speeds(model: LinearModel, damping_ratios, speed_range, frequency_limit
     for attempt in range(_ENRICHED + 1):
         scan = SpeedScan(model, reduction, tuple(damping_ratios), known)
         scan.walk(speed_range, enough, first_step)
-        lacking = _missing(scan) if attempt < _ENRICHED else []
+        lacking = _missing(scan, speed_range) if attempt < _ENRICHED else []
         if not lacking:
             break
         missing += lacking
@@ -284,10 +284,14 @@ def scan_speeds(model: LinearModel, damping_ratios, speed_range, frequency_limit
     return scan
 
 
-def _missing(scan: SpeedScan) -> list:
-    """What the dropped modes add to shapes of watched modes that they move too much, at the first, a middle and the last speed."""
+def _missing(scan: SpeedScan, speed_range) -> list:
+    """What the dropped modes add to shapes of watched modes that they move too much.
+
+    At a middle speed and at the last one; where that is the end of the range, and not just behind a crossing, also at the first.
+    """
     nodes = scan.nodes if scan.reduction.dropped.shape[1] else []
-    return [shape for node in dict.fromkeys(nodes[k] for k in (0, len(nodes) // 2, -1) if nodes) for shape in _missing_at(scan, node)]
+    places = (0, len(nodes) // 2, -1) if scan.nodes[-1].speed > 0.999 * speed_range[1] else (len(nodes) // 2, -1)
+    return [shape for node in dict.fromkeys(nodes[k] for k in places if nodes) for shape in _missing_at(scan, node)]
 
 
 def _missing_at(scan: SpeedScan, node):

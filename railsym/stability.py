@@ -192,10 +192,15 @@ def is_dissipative(model: LinearModel) -> bool:
 
 
 def _is_semidefinite(matrix) -> bool:
+    filled = np.flatnonzero(matrix.any(axis=0) | matrix.any(axis=1))
+    if len(filled) < len(matrix):
+        matrix = matrix[filled[:, None], filled]
     both = 0.5 * (matrix + matrix.T)
     scale = 1.0 / np.sqrt(np.where(both.diagonal() > 0, both.diagonal(), 1.0))
+    both *= scale[:, None] * scale
+    both.ravel()[::len(both) + 1] += 1e-9
     try:
-        np.linalg.cholesky(both * (scale[:, None] * scale) + 1e-9 * np.eye(len(matrix)))
+        np.linalg.cholesky(both)
     except np.linalg.LinAlgError:
         return False
     return True
