@@ -35,7 +35,8 @@ def _figures(configuration, limit, what):
     dense, one = np.mean([_dense_loop(vehicle, case, result) for case, result in zip(cases[:_DENSE], found)], axis=0)
     solves = np.mean([result.scanned_speeds + result.newton_steps for result in found])
     bound = None if limit is None else 20.0
-    return [Figure(f"critical speeds, {configuration}", 1.0 / seconds, "cases/s", limit, f"{_CASES} cases of 12 numbers, {what}", at_least=True),
+    return [Figure(f"critical speeds, {configuration}", 1.0 / seconds, "cases/s", limit, f"{_CASES} cases of 12 numbers, {what}",
+                   at_least=True),
             Figure("dense eigvals to the same answer", 1e3 * dense, "ms", None, f"a case: {_GRID} speeds, then Brent's method to {_AGREE:g}"),
             Figure("ratio, same answer", dense / seconds, "-", bound, "dense over railsym", at_least=True),
             Figure("ratio, solve for solve", one * solves / seconds, "-", None, f"{solves:.1f} eigenproblems and Newton steps a case")]

@@ -18,6 +18,7 @@ CHANGES = {
     "nothing": {},
     "a damper": {"anti_yaw_damper.damping": 2e5},
     "springs of both kinds of table": {"secondary_spring.stiffness.1": 2e5, "traction_rod.stiffness": 5e6, "anti_roll_bar.stiffness": 5e5},
+    "a spring that moves the static forces": {"primary_spring.stiffness.2": 8e5},
     "a damping that was zero": {"primary_spring.damping": [0.0, 500.0, 800.0]},
     "series stiffness": {"anti_yaw_damper.series_stiffness": 2e6, "secondary_lateral_damper.series_stiffness": 9e6},
     "masses": {"car.mass": 3.1e4, "wheelset_inner.mass": 1500.0, "wheelset_outer.axlebox.mass": 120.0, "bogie.inertia.0": 2100.0},
