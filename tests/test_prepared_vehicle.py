@@ -80,7 +80,7 @@ def test_a_case_that_fails_leaves_nothing_behind(vehicle, prepared):
         assert getattr(before, name).tobytes() == getattr(after, name).tobytes()
 
 
-@pytest.mark.parametrize("name", ["bogie", "manchester_vehicle1", "wheelset", "cooperrider"])
+@pytest.mark.parametrize("name", ["bogie", "manchester_vehicle1", "wheelset", "cooperrider", "pendolino_tilting"])
 def test_every_number_of_the_shipped_vehicles(name):
     """One draw for all parameters of a kind: none may be forgotten."""
     vehicle = load_vehicle(name)
