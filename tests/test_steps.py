@@ -22,6 +22,25 @@ BOGIE = rs.load_vehicle("bogie").configured("with_anti_yaw_dampers")
 CONES = ConicalContact(zones=(Cone(0.1),))
 ROUGH = Track.straight(400.0).with_irregularity("erri_b176_low", seed=1)
 
+FULL = """
+import resource, signal
+import railsym as rs
+from railsym.conical_contact import Cone, ConicalContact
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+given = {"speed": 40.0, "contact": ConicalContact(zones=(Cone(0.1),)), "channels": "*.y", "rate": 1000.0, "save": "run.nc"}
+vehicle = rs.load_vehicle("bogie").configured("with_anti_yaw_dampers")
+rs.simulate(vehicle, duration=0.1, **given)
+resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+try:
+    rs.simulate(vehicle, duration=20.0, **given)
+except rs.RailsymError as error:
+    run, written = error.run, rs.Run.from_netcdf("run.nc.part")
+    print(error)
+    assert "file of that name is as it was" in str(error) and run.status == "interrupted" and "File too large" in run.message
+    assert len(run) > len(written) > 4000 and (run["car.y"][:len(written)] == written["car.y"]).all()
+print(len(rs.Run.from_netcdf("run.nc")))
+"""
 COUNTER = """
 #include <stddef.h>
 void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t), *__libc_memalign(size_t, size_t);
@@ -141,6 +160,13 @@ def test_ctrl_c_returns_what_was_computed():
     run = simulation.result()
     assert run.status == "interrupted" and run.info.ending.time > 0.4 and len(run) == run.info.extra["counts"]["steps"] + 1
     assert run.time[-1] == pytest.approx(run.info.ending.time, abs=1e-9)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="file size limits are POSIX")
+def test_a_full_disk_loses_neither_the_run_nor_the_one_before(tmp_path):
+    done = subprocess.run([sys.executable, "-c", FULL], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert "writing stopped after" in done.stdout and done.stdout.split()[-1] == "101"
 
 
 def test_irregularities_shorter_than_the_run(tmp_path):

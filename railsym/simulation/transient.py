@@ -12,7 +12,7 @@ import numpy as np
 
 from railsym._core_integrator import STOPPED
 from railsym.errors import ControllerError, SimulationError
-from railsym.results import ChannelWriter, Run
+from railsym.results import ChannelWriter, ResultFileError, Run
 from railsym.results.metadata import Ending, RunInfo
 from railsym.simulation.assembled import Assembled
 from railsym.simulation.channels import Recorder, catalogue, chosen
@@ -220,8 +220,15 @@ class Simulation:
         """Make channels of what waits, and write them."""
         if self._waiting:
             times, values = self._keep()
-            if writer is not None and len(times):
+            if writer is None or not len(times):
+                return
+            try:
                 writer.write(times, values)
+            except ResultFileError as error:
+                if self._file is None:  # the disk is full: what was computed goes with the error
+                    self.ending = Ending("interrupted", time=self.time, distance=float(self.parts.speed.place(self.time)), detail=str(error))
+                    error.run = self.result()
+                raise
 
     def _check_duration(self, duration):
         if not 0.0 < duration < np.inf:
@@ -279,6 +286,9 @@ def simulate(vehicle, *, speed, duration, controllers=(), progress=False, save=N
     ------
     SimulationError
         What cannot be started as asked.
+    railsym.results.ResultFileError
+        A file that cannot be written on, a full disk say: what it holds can be read, and ``error.run`` is the `Run` until then (not with
+        ``keep="file"``).
     """
     simulation = Simulation(vehicle, speed=speed, **options)
     if keep == "file" and save is None:
