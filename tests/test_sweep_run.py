@@ -258,6 +258,44 @@ def test_an_executor_of_ones_own(tmp_path):
     assert (tmp_path / "1.nc").read_bytes() == (tmp_path / "2.nc").read_bytes()
 
 
+class Counting:
+    """An executor in this process that counts how often the study travels; every so often it works as a worker that has just come."""
+
+    def __init__(self, new_every=None):
+        self.calls = self.travelled = 0
+        self.new_every = new_every
+
+    def submit(self, function, key, version, payload, *rest):
+        from concurrent.futures import Future
+
+        from railsym.sweep import worker
+
+        self.calls += 1
+        self.travelled += payload is not None
+        if self.new_every and self.calls % self.new_every == 0:
+            worker._studies.clear()
+        future = Future()
+        try:
+            future.set_result(function(key, version, payload, *rest))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def test_the_study_travels_once_to_a_worker(tmp_path, monkeypatch):
+    monkeypatch.setattr("railsym.sweep.dispatch._MOST", 1)
+    study = logged(tmp_path, 60)
+    study.run(tmp_path / "whole.nc")
+    steady, changing = Counting(), Counting(new_every=10)
+    for name, executor in (("steady", steady), ("changing", changing)):
+        executor._max_workers = 1
+        study.run(tmp_path / f"{name}.nc", executor=executor)
+        assert (tmp_path / f"{name}.nc").read_bytes() == (tmp_path / "whole.nc").read_bytes()
+    assert steady.calls == 60 and steady.travelled == 2            # with the two chunks that may be under way at once
+    again = changing.calls - 60
+    assert 0 < again <= 2 * (changing.calls // 10) and changing.travelled == 2 + again
+
+
 @pytest.mark.parametrize("what, words", [({"workers": 0}, "workers = 0"), ({"executor": "slurm"}, "'mpi' or the address"),
                                          ({"executor": 3}, "executor 3")])
 def test_places_that_are_none(tmp_path, what, words):
