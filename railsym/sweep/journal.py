@@ -110,13 +110,20 @@ class Journal:
                 file = open(os.open(self.path, os.O_RDWR | os.O_CREAT, 0o666), "r+b", buffering=0)
             except OSError as error:
                 raise StoreError(f"{self.path} cannot be opened: {reason(error)}") from error
-            if locked_by_other(file):
+            if self._taken(file):
                 file.close()
                 raise StoreError(f"{self.store} is being computed by another run, which holds {self.path.name}; wait until it has ended, "
                                  "end it, or give another name")
             if self.path.exists() and os.path.samestat(os.fstat(file.fileno()), self.path.stat()):
                 return file
             file.close()
+
+    def _taken(self, file):
+        try:
+            return locked_by_other(file)
+        except OSError as error:
+            file.close()
+            raise StoreError(f"{self.path} cannot be locked ({reason(error)}), so two runs on it could not be told apart; use another disk") from error
 
     def _begin(self, header):
         frames = read_frames(self.path)
