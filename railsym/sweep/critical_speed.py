@@ -11,7 +11,7 @@ from railsym.critical_cases import CriticalSpeedSolver
 from railsym.critical_speed import SPEED_RANGE, damping_ratio_of
 from railsym.stability import FREQUENCY_BAND
 from railsym.sweep.analysis import Analysis, Output, option
-from railsym.sweep.linear_contact import contact_inputs, solver_by_contact
+from railsym.sweep.linear_contact import contact_inputs, contact_of
 
 FOUND, STABLE, UNSTABLE = "found", "stable", "unstable_at_start"
 
@@ -62,11 +62,10 @@ class CriticalSpeed(Analysis):
         options = {"damping_ratio": damping_ratio_of(self.criterion, self.damping_ratio), "speed_range": self.speed_range,
                    "frequency_band": self.frequency_band}
 
-        solver_of = solver_by_contact(lambda contact: CriticalSpeedSolver(vehicle, contact=contact, **options), self.conicity)
+        solver = CriticalSpeedSolver(vehicle, contact=contact_of(self.conicity, {}), **options)
 
         def solve(case):
-            solver, conicity = solver_of(case.settings)
-            found = solver.solve(case.changes, conicity)
+            found = solver.solve(case.changes, contact=contact_of(self.conicity, case.settings))
             if found.speed is None:
                 return {"speed": np.nan, "frequency_hz": np.nan, "verdict": UNSTABLE if found.unstable_at_start else STABLE, "label": ""}
             return {"speed": found.speed, "frequency_hz": found.frequency_hz, "verdict": FOUND, "label": found.label}

@@ -3,9 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import lru_cache
-
 from railsym.contact import _UNITS, LinearContact
 from railsym.sweep.space import Input
 
@@ -22,24 +19,3 @@ def contact_of(conicity, settings):
     """`LinearContact` of a case."""
     given = {} if conicity is None else {"conicity": conicity}
     return LinearContact(**given | {name[len(PREFIX):]: value for name, value in settings.items() if name.startswith(PREFIX)})
-
-
-def solver_by_contact(make, conicity):
-    """Function from settings to a solver and a conicity.
-
-    One solver serves all conicities; another one is made where anything else of the contact changes.
-
-    Parameters
-    ----------
-    make : callable
-        LinearContact to solver.
-    conicity : float or None
-        Of the analysis.
-    """
-    made = lru_cache(maxsize=1)(make)
-
-    def of(settings):
-        contact = contact_of(conicity, settings)
-        return made(replace(contact, conicity=LinearContact.conicity)), contact.conicity
-
-    return of

@@ -12,7 +12,7 @@ from railsym.linear_model import Linearisation
 from railsym.stability import FREQUENCY_BAND
 from railsym.sweep.analysis import Analysis, Output, option
 from railsym.sweep.errors import SweepError
-from railsym.sweep.linear_contact import contact_inputs, solver_by_contact
+from railsym.sweep.linear_contact import contact_inputs, contact_of
 from railsym.sweep.space import Input
 
 
@@ -63,11 +63,11 @@ class Modes(Analysis):
         return found | {"unstable": Output("-", "number of unstable modes")}
 
     def solver(self, vehicle):
-        model_of = solver_by_contact(lambda contact: CriticalSpeedSolver(vehicle, contact=contact), self.conicity)
+        solver = CriticalSpeedSolver(vehicle, contact=contact_of(self.conicity, {}))
 
         def solve(case):
-            solver, conicity = model_of(case.settings)
-            modes = Linearisation.of(solver.model(case.changes, conicity), case.settings.get("speed", self.speed)).modes()
+            model = solver.model(case.changes, contact=contact_of(self.conicity, case.settings))
+            modes = Linearisation.of(model, case.settings.get("speed", self.speed)).modes()
             low, high = self.frequency_band
             chosen = sorted((m for m in modes if low <= m.frequency_hz <= high and m.frequency_hz > 0.0), key=lambda m: (m.damping_ratio, m.frequency_hz))
             found = {"unstable": float(len(modes.unstable))}
