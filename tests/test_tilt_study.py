@@ -104,7 +104,7 @@ def test_parts_of_a_track(study):
 
 def test_report_and_data_say_the_same(study):
     text, data = str(study), json.loads(json.dumps(as_data(study)))
-    assert "gain margin" in text and "the paper: active tilt lowers" in text
+    assert "gain margin" in text and "short_s, 105 km/h" in text
     assert [case["name"] for case in data["cases"]] == ["passive", "active", "detection", "leading", "database", "database, exact"]
     assert data["cases"][1]["ride"]["front"]["peak"] == study["active"].ride["front"]["peak"]
     with pytest.raises(TiltError, match="no case 'agile'"):

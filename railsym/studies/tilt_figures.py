@@ -14,6 +14,7 @@ from railsym.criteria.filters import Butterworth
 SMOOTH = 2.0               # Hz, low-pass (zero phase) of accelerations before peaks and jerk are read: what tilting can act on
 _LATEST = 2.0              # s, lags looked for
 _STEADY = 1.0              # s at the end of a circular curve, over which its values are means
+_HALF, _SETTLES = 12.0, 2.0  # m, half a vehicle; s, that a vehicle takes to settle at least
 _STILL = 1e-7              # 1/m a metre: slower changes of curvature and cant are none
 G = 9.81
 
@@ -84,11 +85,11 @@ def lag(time, tilt, ideal):
 
 
 def steady_values(run, parts, names):
-    """Means of channels over the last second before the vehicle's middle leaves each circular curve: list of dict."""
+    """Means of channels over the last second before the vehicle's middle leaves each circular curve that lasts long enough: list of dict."""
     found = []
     for start, end in parts.curves:
-        inside = (run["s"] <= end - 12.0) & (run["s"] > end - 12.0 - _STEADY * run["V"])
-        if inside.any() and end - start > 30.0:
+        inside = (run["s"] <= end - _HALF) & (run["s"] > end - _HALF - _STEADY * run["V"])
+        if inside.any() and end - start > 2.0 * _HALF + _SETTLES * float(run["V"].max()):
             found.append({name: float(np.mean(run[name][inside])) for name in names} | {"s": float(np.mean(run["s"][inside]))})
     return found
 

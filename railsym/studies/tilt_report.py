@@ -17,7 +17,7 @@ PAPER = ("the paper: active tilt lowers the passenger's lateral acceleration aga
 
 def report(study):
     """Everything a study found, as text."""
-    lines = [heading(study), f"control: {control_text(study.parameters)}", PAPER, "",
+    lines = [heading(study), f"control: {control_text(study.parameters)}", *([PAPER] if study.scene.track.name == "s_curve_500" else []), "",
              "passengers: peak and jerk of the lateral acceleration on the floor (m/s^2, m/s^3, low-passed at 2 Hz); lag of tilt behind the ideal one;",
              "what a perfect tilt would have spared (over, m/s^2); P_CT (formula recalled) of the worst transition, standing", passengers(study), "",
              "tilting and track", loads(study), "", steady(study), "", f"loop: {study.loop}"]

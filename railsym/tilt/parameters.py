@@ -122,8 +122,8 @@ class TiltParameters:
         self._check_ranges()
 
     def _check_ranges(self):
-        if self.limit >= 0.5 * np.pi or self.share > 2.0:
-            raise TiltError(f"limit {np.degrees(self.limit):g} deg, share {self.share:g}: below 90 degrees, at most 2")
+        if self.limit >= 0.5 * np.pi or self.share > 5.0:
+            raise TiltError(f"limit {np.degrees(self.limit):g} deg, share {self.share:g}: below 90 degrees, at most 5")
         for low, high in (("curve_off", "curve_on"), ("roll_off", "roll_on"), ("lateral_off", "lateral_on")):
             if getattr(self, low) >= getattr(self, high):
                 raise TiltError(f"{low} {getattr(self, low):g} must lie below {high} {getattr(self, high):g}: between them is the hysteresis")
