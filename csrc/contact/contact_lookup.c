@@ -6,6 +6,7 @@
  */
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "../trigonometry.h"
 #include "rows.h"
@@ -151,8 +152,10 @@ INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw
  * then 1 to 4. d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
 INLINE void chain(const row *f, const double *tau, const slopes *p, double root, double inverse, double radius, row *out)
 {
-	const row power = {{{p->v * root, 1.0, 1.0, 1.0}, {root, root}}}, slope = {{{1.5 * root}, {0.5 * inverse, 0.5 * inverse}}};
-	row by_tau, by_p;
+	const double powers[RS_FIELDS] = {p->v * root, 1.0, 1.0, 1.0, root, root}, of_p[RS_FIELDS] = {1.5 * root, 0.0, 0.0, 0.0, 0.5 * inverse, 0.5 * inverse};
+	row power, slope, by_tau, by_p; /* copied: GCC 12 takes the parts of an initialiser of vectors for uninitialised */
+	memcpy(&power, powers, sizeof power);
+	memcpy(&slope, of_p, sizeof slope);
 	MULTIPLY_ROWS(by_tau, power, f[BY_TAU]);
 	MULTIPLY_ROWS(by_p, slope, f[VALUE]);
 	MULTIPLY_ROWS(out[0], power, f[VALUE]);
