@@ -6,7 +6,6 @@
  */
 #include <math.h>
 #include <stddef.h>
-#include <string.h>
 
 #include "../trigonometry.h"
 #include "rows.h"
@@ -148,14 +147,17 @@ INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw
 	return (slopes){s * P, {by[0], by[1], s, s * yaw * t * arm}};
 }
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* GCC 12 says so of the vectors in the initialiser of power and slope */
+#endif
+
 /* Values of all fields with their slopes over (y, roll, drop, yaw), load and semi-axes with their power of p: column 0 of out,
  * then 1 to 4. d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
 INLINE void chain(const row *f, const double *tau, const slopes *p, double root, double inverse, double radius, row *out)
 {
-	const double powers[RS_FIELDS] = {p->v * root, 1.0, 1.0, 1.0, root, root}, of_p[RS_FIELDS] = {1.5 * root, 0.0, 0.0, 0.0, 0.5 * inverse, 0.5 * inverse};
-	row power, slope, by_tau, by_p; /* copied: GCC 12 takes the parts of an initialiser of vectors for uninitialised */
-	memcpy(&power, powers, sizeof power);
-	memcpy(&slope, of_p, sizeof slope);
+	const row power = {{{p->v * root, 1.0, 1.0, 1.0}, {root, root}}}, slope = {{{1.5 * root}, {0.5 * inverse, 0.5 * inverse}}};
+	row by_tau, by_p;
 	MULTIPLY_ROWS(by_tau, power, f[BY_TAU]);
 	MULTIPLY_ROWS(by_p, slope, f[VALUE]);
 	MULTIPLY_ROWS(out[0], power, f[VALUE]);
@@ -168,6 +170,10 @@ INLINE void chain(const row *f, const double *tau, const slopes *p, double root,
 	}
 	ADD_SCALED_ROW(out[2], -radius, out[1]);
 }
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 INLINE void take(const double (*from)[RS_FIELDS], int field, double *to)
 {
