@@ -189,6 +189,19 @@ def test_failing_cases_are_in_the_report(tmp_path):
     assert "2 cases failed" in text and "Failed cases" in text and "friction" in next(iter(found.results.errors.values()))
 
 
+def test_a_study_that_fails_throughout_is_reported(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.toml").write_text(SMALL.replace('"contact.conicity" = { normal = [[0.2, 0.02], "-"], low = 0.1, high = 0.35 }',
+                                                   '"contact.friction" = { uniform = [[-0.2, -0.1], "-"] }').replace("cases = 24", "cases = 3")
+                                     + '[uncertainty]\nlimit = [260, "km/h"]\n', encoding="utf-8")
+    assert main(["study", "s.toml", "--report", "s.html"]) == 0
+    shown = capsys.readouterr()
+    assert "3 cases failed" in shown.out and "none of the 3 cases has a value" in shown.out and "the first that failed, case 0" in shown.err
+    text = (tmp_path / "s.html").read_text(encoding="utf-8")
+    assert "No case has a value to draw" in text and "Failed cases" in text
+    assert main(["study", "s.toml", "--resume", "--plot", "s.png"]) == 2 and "nothing to draw" in capsys.readouterr().err
+
+
 def test_a_plain_study_of_two_factors_has_its_map(tmp_path):
     (tmp_path / "s.toml").write_text('[study]\nvehicle = "bogie"\n[analysis]\nkind = "critical_speed"\n[factors]\n'
                                      '"contact.conicity" = { grid = [[0.1, 0.3], "-"], points = 3 }\n'

@@ -168,10 +168,14 @@ class _Run:
             return one.run(history, True, self.pool, lambda case: bar.update())
 
     def _probability(self, results):
-        from railsym.uncertainty import probability_below
+        from railsym.uncertainty import UncertaintyError, probability_below
 
         settings = self.campaign.uncertainty
         if settings is None or settings.limit is None:
             return None
         values, above = values_of(results, settings.output)
-        return probability_below(values, settings.limit, above=above, confidence=settings.confidence)
+        try:
+            return probability_below(values, settings.limit, above=above, confidence=settings.confidence)
+        except UncertaintyError as error:
+            self.say(f"  {error}")
+            return None

@@ -94,8 +94,19 @@ class CampaignResults:
         return figures(self)
 
     def plot(self):
-        """Draw the leading picture; returns its axes."""
-        return self.figures()[0].draw()
+        """Draw the leading picture; returns its axes.
+
+        Raises
+        ------
+        CampaignError
+            No case has a value to draw.
+        """
+        from railsym.campaign.errors import CampaignError
+
+        made = self.figures()
+        if not made:
+            raise CampaignError(f"there is nothing to draw: {self.results.message}; look at the errors of the cases")
+        return made[0].draw()
 
     def report(self, path):
         """Write the report: one HTML page that holds all it shows.

@@ -26,8 +26,9 @@ def as_text(found):
         blocks.append(f"optimise.{one.optimisation.name}\n{one.found}")
         if one.probability is not None:
             again, _ = summary(one.recheck, output)
-            blocks.append(f"the study at this optimum: {output} {_number(again['mean'])} {unit} in the mean, standard deviation "
-                          f"{_number(again['standard deviation'])} {unit}\n{_shown_probability(one.probability, unit, shown(results.unit(output))[0])}")
+            spread = "" if "mean" not in again else (f": {output} {_number(again['mean'])} {unit} in the mean, standard deviation "
+                                                     f"{_number(again['standard deviation'])} {unit}")
+            blocks.append(f"the study at this optimum{spread}\n{_shown_probability(one.probability, unit, shown(results.unit(output))[0])}")
     return "\n\n".join(blocks)
 
 
