@@ -111,6 +111,16 @@ def test_uncertainty_agrees_with_itself(run):
     assert u.tornado.names[0] == "contact.conicity" and u.sobol.cases == 4 * 5
 
 
+def test_stable_vehicles_lie_above_limits_within_the_range_only(tmp_path):
+    """A range that ends at 40 m/s, where the bogie is stable: a limit below 40 m/s is kept, of one above nothing is known."""
+    text = SMALL.replace('kind = "critical_speed"', 'kind = "critical_speed"\nspeed_range = [[5, 40], "m/s"]').replace("cases = 24", "cases = 4")
+    for limit, known in ((30, 4), (60, 0)):
+        path = tmp_path / f"s{limit}.toml"
+        path.write_text(text + f'[uncertainty]\nlimit = [{limit}, "m/s"]\ntornado = false\nform = false\n', encoding="utf-8")
+        found = load(path).run(tmp_path / "s.nc", resume=True).uncertainty
+        assert (found.probability is None and "none of the 4 cases" in found.notes[0]) if not known else found.probability.value == 0.0
+
+
 def test_the_optimum_beats_the_vehicle_and_is_checked_anew(run):
     damper, trade = run[1].optimised
     vehicle = run[1].campaign.study.base()

@@ -12,7 +12,7 @@ from time import perf_counter
 from railsym.campaign.errors import CampaignError
 from railsym.campaign.optimisation import Optimisation
 from railsym.campaign.results import CampaignResults, Optimised, Stage
-from railsym.campaign.uncertainty import Uncertainty, assess, sobol_study, values_of
+from railsym.campaign.uncertainty import Uncertainty, assess, probability_of, sobol_study
 from railsym.campaign.variants import variant
 
 
@@ -168,14 +168,13 @@ class _Run:
             return one.run(history, True, self.pool, lambda case: bar.update())
 
     def _probability(self, results):
-        from railsym.uncertainty import UncertaintyError, probability_below
+        from railsym.uncertainty import UncertaintyError
 
         settings = self.campaign.uncertainty
         if settings is None or settings.limit is None:
             return None
-        values, above = values_of(results, settings.output)
         try:
-            return probability_below(values, settings.limit, above=above, confidence=settings.confidence)
+            return probability_of(settings, results)
         except UncertaintyError as error:
             self.say(f"  {error}")
             return None

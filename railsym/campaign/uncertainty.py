@@ -95,6 +95,22 @@ def values_of(results, output):
     return values, above
 
 
+def probability_of(settings, results):
+    """`railsym.uncertainty.Probability` that the output lies below the limit.
+
+    Raises
+    ------
+    UncertaintyError
+        No case with a known side.
+    """
+    from railsym.uncertainty import probability_below
+
+    values, above = values_of(results, settings.output)
+    # a limit beyond the range of speeds: cases that stay stable may lie on either side of it
+    above = above & (settings.limit <= getattr(results.study.analysis, "speed_range", (0.0, np.inf))[1])
+    return probability_below(values, settings.limit, above=above, confidence=settings.confidence)
+
+
 def assess(settings, results, sobol_results):
     """Everything but the runs: from results of the plan and of Saltelli's cases.
 
@@ -108,7 +124,7 @@ def assess(settings, results, sobol_results):
     -------
     UncertaintyResults
     """
-    from railsym.uncertainty import SpeedModel, Tolerances, form, probability_below, sobol_indices, tornado
+    from railsym.uncertainty import SpeedModel, Tolerances, form, sobol_indices, tornado
 
     study, notes, found = results.study, [], {}
 
@@ -119,10 +135,7 @@ def assess(settings, results, sobol_results):
             notes.append(f"{name}: {error}")
 
     if settings.limit is not None:
-        values, above = values_of(results, settings.output)
-        # a limit beyond the range of speeds: cases that stay stable may lie on either side of it
-        above = above & (settings.limit <= getattr(study.analysis, "speed_range", (0.0, np.inf))[1])
-        attempt("probability", lambda: probability_below(values, settings.limit, above=above, confidence=settings.confidence))
+        attempt("probability", lambda: probability_of(settings, results))
     if sobol_results is not None:
         attempt("sobol", lambda: sobol_indices(study.names, sobol_results[settings.output], second_order=settings.second_order,
                                                confidence=settings.confidence, seed=study.seed))
