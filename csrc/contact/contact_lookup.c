@@ -156,8 +156,12 @@ INLINE slopes penetration(const double (*c)[RS_CLOSURE], double drop, double yaw
  * then 1 to 4. d/d(roll) at constant y is d/d(roll) - r0 d/d(eta). */
 INLINE void chain(const row *f, const double *tau, const slopes *p, double root, double inverse, double radius, row *out)
 {
-	const row power = {{{p->v * root, 1.0, 1.0, 1.0}, {root, root}}}, slope = {{{1.5 * root}, {0.5 * inverse, 0.5 * inverse}}};
-	row by_tau, by_p;
+	static const row load = ROW_OF(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), place = ROW_OF(0.0, 1.0, 1.0, 1.0, 0.0, 0.0), axes = ROW_OF(0.0, 0.0, 0.0, 0.0, 1.0, 1.0);
+	row power = place, slope = ROW_OF(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), by_tau, by_p;
+	ADD_SCALED_ROW(power, p->v * root, load);
+	ADD_SCALED_ROW(power, root, axes);
+	ADD_SCALED_ROW(slope, 1.5 * root, load);
+	ADD_SCALED_ROW(slope, 0.5 * inverse, axes);
 	MULTIPLY_ROWS(by_tau, power, f[BY_TAU]);
 	MULTIPLY_ROWS(by_p, slope, f[VALUE]);
 	MULTIPLY_ROWS(out[0], power, f[VALUE]);
