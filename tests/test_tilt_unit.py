@@ -86,6 +86,25 @@ def test_sensors_read_what_the_body_feels():
     assert np.median(np.abs(found - np.array(seen)), axis=0) == pytest.approx(np.zeros(4), abs=2e-3)
 
 
+def test_formula_of_the_sensors_is_that_of_the_channels():
+    """Large random motions, where every term counts, against `railsym.simulation.markers`."""
+    from railsym._core import _doubles, ffi, lib
+    from railsym.simulation.markers import _turning, accelerometer, rotations
+
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        q, u, a, offset, w, dw, pull = rng.standard_normal((7, 6))
+        arm, V, dV = rng.standard_normal((2, 3)), 20.0, 1.3
+        frame = ffi.new("rs_tilt_frame *", {"V": V, "dV": dV, "w": list(w[:3]), "dw": list(dw[:3]), "gravity": list(pull[:3])})
+        out, lever = np.empty(4), arm.ravel().copy()
+        lib.rs_tilt_motion(*map(_doubles, (q, u, a, offset[:3].copy(), lever)), frame, _doubles(out))
+        motion = {"V": np.array([V]), "dV": np.array([dV]), "w": w[None, :3], "dw": dw[None, :3], "gravity": pull[None, :3]}
+        columns = [part[:, None] for part in (q, u, a)]
+        expected = [accelerometer(*columns, point, offset[:3], motion, 9.81)[0][1] for point in arm]
+        turning = rotations(q[3:, None])[0].T @ (_turning(q[3:, None], u[3:, None], a[3:, None])[0][0] + w[:3])
+        np.testing.assert_allclose(out, [turning[0], turning[2], *expected], rtol=1e-12, atol=1e-11)
+
+
 def test_mirrored_curve_gives_mirrored_motion():
     units = [TiltUnit(CompiledController(TiltParameters(stale=np.inf)), SensorSet.ideal()) for _ in range(2)]
     right, left = (run(unit, track=track) for unit, track in zip(units, (TRACK, TRACK.mirrored())))

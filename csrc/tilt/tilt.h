@@ -16,6 +16,14 @@
  *             output    RS_TILT_OUTPUTS, as OUTPUTS of railsym/tilt/faults.py
  *   Status    RS_OK always: its type is that of a rs_tilt_law, which may answer otherwise to stop a run
  *
+ * rs_tilt_motion              roll and yaw rate (rad/s) of a body, and the lateral acceleration (m/s^2) of two points of it against free fall,
+ *                             in its axes
+ *   Given     q u a     6 each: x y z yaw roll pitch of the body in its track frame, their rates and accelerations
+ *             offset    3, m, design position of the body in its track frame
+ *             arm       6, m, the two points from it
+ *             frame     motion of the track frame, in its axes
+ *   Returned  out       4
+ *
  * rs_tilt_unit_create         sensors, a law and the commands of actuators on an integrator; NULL without memory or where a place in
  *                             the setup lies outside the model. Everything that the setup points to is kept by the caller.
  * rs_tilt_unit_watch          a watcher of the integrator, with the unit as context: sensors
@@ -85,15 +93,6 @@ static inline double rs_tilt_clamp(double value, double bound)
 {
 	return value < -bound ? -bound : value > bound ? bound : value;
 }
-
-typedef struct {
-	double V, dV, w[3], dw[3], gravity[3];
-} rs_tilt_frame;
-
-/* tilt_motion.c: roll and yaw rate (rad/s) of a body, and the lateral acceleration (m/s^2) of two points of it against free fall,
- * in its axes. q, u, a begin at its x; arm: from its design position, which is offset in its track frame. */
-void rs_tilt_motion(const double *q, const double *u, const double *a, const double *offset, const double *arm, const rs_tilt_frame *frame,
-                    double *out);
 
 /* tilt_plausibility.c */
 int rs_tilt_take(rs_tilt_channels *channels, const rs_tilt_constants *k, const double *raw);

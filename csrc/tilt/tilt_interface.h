@@ -46,6 +46,12 @@ typedef struct {
 	rs_tilt_law law;                    /* NULL: the caller reads and commands */
 	void *context;
 } rs_tilt_setup;
+typedef struct {
+	double V, dV, w[3], dw[3], gravity[3];   /* m/s, m/s^2, rad/s, rad/s^2, m/s^2, of a track frame */
+} rs_tilt_frame;
+void rs_tilt_motion(const double *q, const double *u, const double *a, const double *offset, const double *arm, const rs_tilt_frame *frame,
+                    double *out);
+
 typedef struct rs_tilt_unit rs_tilt_unit;
 
 rs_tilt_unit *rs_tilt_unit_create(rs_integrator *integrator, const rs_tilt_setup *setup, int rows);
