@@ -12,6 +12,7 @@ from railsym.tilt.sensors import NoiseSource, SensorSet
 from railsym.tilt.signals import SIGNALS, Signals
 
 _CHUNK = 50          # samples between two calls of Python where the law is in C
+_PACK = 500          # samples
 
 
 class TiltUnit:
@@ -54,7 +55,7 @@ class TiltUnit:
         self.rate = float(own if rate is None and own is not None else 100.0 if rate is None else rate)
         if own is not None and abs(self.rate - own) > 1e-9 * self.rate:
             raise TiltError(f"rate {rate:g} Hz: the controller samples at {own:g} Hz")
-        self._rows, self._plant = [], None
+        self._rows, self._packed, self._plant = [], [], None
 
     @property
     def controller(self):
@@ -74,14 +75,21 @@ class TiltUnit:
         angle = self._checked(time, self.law.step(time, Signals(*signals)))
         plant.command(angle)
         signals = getattr(self.law, "consumed", None) or signals
-        self._rows.append([time, *signals, *(getattr(self.law, "outputs", None) or [angle] + [0.0] * (len(OUTPUTS) - 1))])
+        self._keep([[time, *signals, *(getattr(self.law, "outputs", None) or [angle] + [0.0] * (len(OUTPUTS) - 1))]])
+
+    def _keep(self, rows):
+        """Rows of the record; packed from time to time, so that a sample takes 160 bytes."""
+        self._rows.extend(rows)
+        if len(self._rows) >= _PACK:
+            self._packed.append(np.array(self._rows))
+            self._rows = []
 
     def _start(self, simulation):
         from railsym.tilt.plant import Plant
 
         if hasattr(self.law, "reset"):
             self.law.reset()
-        self._rows = []
+        self._rows, self._packed = [], []
         self._plant = Plant(simulation, self, NoiseSource(self.sensors), _CHUNK)
 
     def _checked(self, time, answer):
@@ -101,12 +109,12 @@ class TiltUnit:
 
     def _flush(self):
         if self.compiled and self._plant is not None:
-            self._rows.extend(self._plant.log())
+            self._keep(self._plant.log())
 
     def rows(self):
         """Array (n, 20) of samples so far: time, signals, outputs."""
         self._flush()
-        return np.array(self._rows).reshape(-1, 1 + len(SIGNALS) + len(OUTPUTS))
+        return np.concatenate([*self._packed, np.array(self._rows).reshape(-1, 1 + len(SIGNALS) + len(OUTPUTS))])
 
     @property
     def record(self):
