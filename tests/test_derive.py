@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def check(root, hash_seed):
     """``python -m derive --check`` in a process of its own, under way."""
-    environment = os.environ | {"PYTHONHASHSEED": str(hash_seed), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = os.environ | {"PYTHONHASHSEED": str(hash_seed), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONSAFEPATH": ""}
     return subprocess.Popen([sys.executable, "-m", "derive", "--check"], cwd=root, env=environment,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
