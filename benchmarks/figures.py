@@ -15,7 +15,7 @@ from benchmarks.creep import creep_figures
 from benchmarks.curving import curving_figures
 from benchmarks.kernels import kernel_figures
 from benchmarks.long_run import long_run_figures
-from benchmarks.measure import Figure, cost_of_code, median_time, printed_by
+from benchmarks.measure import ROOT, Figure, cost_of_code, median_time, printed_by
 from benchmarks.wheel_rail import wheel_rail_figures
 from benchmarks.sweep import sweep_figures
 from benchmarks.tilt import tilt_figures
@@ -32,7 +32,7 @@ _SAMPLE = 24          # dense eigenproblems that the extrapolation rests on
 
 def derivation():
     """Deriving all kernels, in a process of its own."""
-    cpu, memory = cost_of_code(_DERIVE)
+    cpu, memory = cost_of_code(_DERIVE, ROOT)
     return [Figure("derive: CPU time", cpu, "s", 15.0, "python -m derive, everything"),
             Figure("derive: peak memory", memory, "MB", 300.0, "resident, of that process")]
 

@@ -33,7 +33,6 @@ def long_run_figures():
 
 def _growth(folder):
     def cost(code, length, keep="file", rate=200.0):
-        # the machinery that starts the process is not counted: ru_maxrss is that of the child
         return cost_of_code(code.format(length=length, speed=SPEED, rate=rate, path=str(Path(folder) / "run.nc"), keep=keep))
 
     made = [cost(_SETUP, length)[1] for length in (SHORT, LONG)]

@@ -7,6 +7,7 @@ import os
 import statistics
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
@@ -48,13 +49,28 @@ def median_time(function, repeat=21):
     return statistics.median(times)
 
 
-def cost_of_code(code, directory=ROOT):
-    """CPU time (s) and peak memory (MB) of ``python -c code`` in a process of its own."""
-    process = subprocess.Popen([sys.executable, "-c", code], cwd=directory, env=os.environ | {"OMP_NUM_THREADS": "1"})
+# Linux hands the peak of the process that starts another one on to it in ru_maxrss, so the kernel's count of the new one is read
+PEAK = """
+import sys
+if sys.platform == "linux":
+    with open("/proc/self/status", encoding="ascii") as status:
+        peak = next(int(line.split()[1]) for line in status if line.startswith("VmHWM")) / 1024.0
+else:
+    import resource
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1024.0**2 if sys.platform == "darwin" else 1024.0)
+print(peak)
+"""
+
+
+def cost_of_code(code, directory=None):
+    """CPU time (s) and peak memory (MB) of ``python -c code`` in a process of its own, started in a folder that holds no other railsym if not told."""
+    directory = tempfile.gettempdir() if directory is None else directory
+    process = subprocess.Popen([sys.executable, "-c", code + PEAK], cwd=directory, env=os.environ | {"OMP_NUM_THREADS": "1"}, stdout=subprocess.PIPE, text=True)
+    printed = process.stdout.read()
     _, status, usage = os.wait4(process.pid, 0)
     if status:
         raise RuntimeError(f"{code!r} ended with status {status}")
-    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / (1024.0 if sys.platform != "darwin" else 1024.0**2)
+    return usage.ru_utime + usage.ru_stime, float(printed.split()[-1])
 
 
 def printed_by(code, directory):

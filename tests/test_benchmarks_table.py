@@ -12,7 +12,7 @@ import pytest
 
 from benchmarks import compare, machine, table
 from benchmarks.__main__ import measured
-from benchmarks.measure import Figure
+from benchmarks.measure import Figure, cost_of_code
 
 ROOT = Path(__file__).resolve().parent.parent
 COST = Figure("step", 8.0, "us", 10.0, "31 bodies")
@@ -86,3 +86,11 @@ def test_the_machine_is_told_without_its_name():
 
     told = "\n".join(machine.lines(machine.described()))
     assert "Python" in told and "numpy" in told and (platform.node() == "" or platform.node() not in told)
+
+
+def test_the_peak_of_a_process_is_its_own():
+    """A process that starts with 300 MB in hand does not hand them on to one that takes 50."""
+    ballast = b"x" * 300_000_000
+    time, peak = cost_of_code("held = b'x' * 50_000_000\n")
+    assert len(ballast) > 0 and time >= 0.0
+    assert 50.0 < peak < 150.0
