@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, finite, save_plot, say, table, write_json
+from railsym.cli_output import check_plot_path, deliver, finite, table
 from railsym.cli_values import CommandError, speed_range
 from railsym.plots.style import KMH
 from railsym.vehicle import load_vehicle
@@ -28,12 +28,7 @@ def run(options):
                         continuation=not options.no_continuation, points=options.points, progress=_progress if watched else None, **forces)
     if watched:
         print("\r\033[K", end="", file=sys.stderr)
-    if options.json != "-":
-        say(report(vehicle, found))
-    if options.json:
-        write_json(as_data(found), options.json)
-    if options.plot:
-        save_plot(found.plot, options.plot)
+    deliver(options, lambda: report(vehicle, found), lambda: as_data(found), found.plot)
 
 
 def _progress(text):

@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, save_plot, say, write_json
+from railsym.cli_output import check_plot_path, deliver
 from railsym.cli_pair import add_contact
 from railsym.cli_values import CommandError, quantity
 
@@ -64,12 +64,7 @@ def run(options):
     found = curving(vehicle, radius=options.radius, cant=options.cant, contact=contact, direction=options.direction, dynamic=options.dynamic,
                     irregularity=options.irregularity, seed=options.seed, length=options.length, dt=options.step,
                     progress=sys.stderr.isatty(), name=text.rpartition(", ")[0], **asked, **more)
-    if options.json != "-":
-        say(found.message)
-    if options.json:
-        write_json(found.to_dict(), options.json)
-    if options.plot:
-        save_plot(found.plot, options.plot)
+    deliver(options, lambda: found.message, found.to_dict, found.plot)
 
 
 def _check(options):

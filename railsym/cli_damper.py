@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, save_plot, say, table, write_json
+from railsym.cli_output import check_plot_path, deliver, save_plot, table
 from railsym.cli_values import CommandError
 
 MODELS = ("viscous", "maxwell", "maxwell_nonlinear")
@@ -60,20 +60,20 @@ def run(options):
     fits = {name: identify(records, model=name, method=options.method) for name in MODELS}
     found = verdict(fits, records)
     speeds = _critical_speeds(options, fits, found) if options.vehicle else None
-    if options.json != "-":
-        say(report(records, fits, found, options.model, speeds))
-    if options.json:
-        write_json(as_data(records, fits, found, options.model, speeds), options.json)
-    if options.plot:
-        from railsym.plots.dampers import plot_damper
-
-        save_plot(lambda: plot_damper(fits, records), options.plot)
+    told = records, fits, found, options.model, speeds
+    deliver(options, lambda: report(*told), lambda: as_data(*told), lambda: _drawn(fits, records))
     if options.map:
         from railsym.plots.damper_map import plot_damper_map
 
         save_plot(lambda: plot_damper_map(fits[options.model].model, records=records), options.map)
     if options.write:
         damper_toml(fits[options.model].model, options.write, options.name)
+
+
+def _drawn(fits, records):
+    from railsym.plots.dampers import plot_damper
+
+    return plot_damper(fits, records)
 
 
 def _records(options):

@@ -100,3 +100,20 @@ def save_plot(draw, path):
         save(draw(), path)
     except OSError as error:
         raise CommandError(f"--plot {path}: {error.strerror}") from None
+
+
+def deliver(options, text, data, draw):
+    """Print a result, write its numbers and draw it, as ``--json`` and ``--plot`` ask; numbers on standard output take the place of the text.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+    text, data, draw : callable
+        Give the text, the plain data, and axes.
+    """
+    if options.json != "-":
+        say(text())
+    if options.json:
+        write_json(data(), options.json)
+    if options.plot:
+        save_plot(draw, options.plot)

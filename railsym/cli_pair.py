@@ -150,3 +150,13 @@ def _check_spacing(pair, vehicles):
             fitting = wanted - 2.0 * pair.tape_circle_offset
             raise CommandError(f"the contacts of {body.name} are {1e3 * wanted:g} mm apart in the vehicle file, the tape circles of the pair "
                                f"{1e3 * pair.tape_circle_spacing:g} mm: give --flange-back-distance {1e3 * fitting:g}mm, and the --gauge that goes with it")
+
+
+def profile_pair(options, vehicle):
+    """The pair of profiles, S1002 on UIC60 if not given, and its amplitude (m)."""
+    if options.wheel is None and options.rail is None:
+        options.wheel, options.rail = "S1002", "UIC60"
+    found = pair_contacts(options, [vehicle])
+    if len(found.contacts) != 1:
+        raise CommandError("--amplitude: V0 is the critical speed at one amplitude")
+    return found.pair, found.contacts[0].amplitude

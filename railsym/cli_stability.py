@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, finite, save_plot, say, table, write_json
+from railsym.cli_output import check_plot_path, deliver, finite, table
 from railsym.cli_pair import FROM_PAIR, pair_contacts, plain_contact
 from railsym.cli_values import CommandError, speed_range
 from railsym.critical_speed import SPEED_RANGE, critical_speed
@@ -40,14 +40,14 @@ def run(options):
         contacts = (plain_contact(options),) * len(conicity)
         found = _solve(vehicle, names, options, contacts[0], conicity, speeds)
     influences = _sensitivities(found, options, contacts, speeds) if options.sensitivity else {}
-    if options.json != "-":
-        say(report(vehicle, found, influences, pair))
-    if options.json:
-        write_json(as_data(vehicle, found, contacts[0], influences, pair), options.json)
-    if options.plot:
-        from railsym.plots import plot_stability_report
+    deliver(options, lambda: report(vehicle, found, influences, pair), lambda: as_data(vehicle, found, contacts[0], influences, pair),
+            lambda: _drawn(found))
 
-        save_plot(lambda: plot_stability_report(found), options.plot)
+
+def _drawn(found):
+    from railsym.plots import plot_stability_report
+
+    return plot_stability_report(found)
 
 
 def chosen_configurations(vehicle, wanted):

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import sys
 
-from railsym.cli_output import check_plot_path, save_plot, say, write_json
-from railsym.cli_pair import add_contact, pair_contacts
+from railsym.cli_output import check_plot_path, deliver, save_plot
+from railsym.cli_pair import add_contact, profile_pair
 from railsym.cli_values import CommandError, numbers, quantity
 
 _SHAPES, _RAILS = ("bump", "half_sine", "blade", "smooth_step"), ("both", "left", "right")
@@ -44,37 +44,21 @@ def run(options):
     """Run the study and show what it found."""
     from railsym.cli_modes import _configured
     from railsym.studies import switch_study, variants
+    from railsym.studies.switch_report import as_data
     from railsym.vehicle import load_vehicle
 
     check_plot_path(options.plot)
     check_plot_path(options.plot_amplitudes)
     vehicle = _configured(load_vehicle(options.vehicle), options.configuration)
-    pair, amplitude = _pair(options, vehicle)
+    pair, amplitude = profile_pair(options, vehicle)
     switch = _switch(options)
     more = {} if options.ratio is None else {"ratios": options.ratio}
     study = switch_study(vehicle, pair, reference=_positive(options.reference, "--reference"), amplitude=amplitude, load=options.load, switch=switch,
                          threshold=not options.no_threshold, sensitivity=variants(switch) if options.sensitivity else (), law=options.law,
                          friction=options.friction, after=options.after, progress=sys.stderr.isatty(), **more)
-    if options.json != "-":
-        say(str(study))
-    if options.json:
-        from railsym.studies.switch_report import as_data
-
-        write_json(as_data(study), options.json)
-    if options.plot:
-        save_plot(study.plot, options.plot)
+    deliver(options, lambda: str(study), lambda: as_data(study), study.plot)
     if options.plot_amplitudes:
         save_plot(study.plot_quasi_linear, options.plot_amplitudes)
-
-
-def _pair(options, vehicle):
-    """The pair of profiles, S1002 on UIC60 if not given, and the amplitude (m) that V0 belongs to."""
-    if options.wheel is None and options.rail is None:
-        options.wheel, options.rail = "S1002", "UIC60"
-    found = pair_contacts(options, [vehicle])
-    if len(found.contacts) != 1:
-        raise CommandError("--amplitude: V0 is the critical speed at one amplitude")
-    return found.pair, found.contacts[0].amplitude
 
 
 def _switch(options):

@@ -7,8 +7,8 @@ import sys
 
 import numpy as np
 
-from railsym.cli_output import check_plot_path, save_plot, say, write_json
-from railsym.cli_pair import add_contact
+from railsym.cli_output import check_plot_path, deliver, say
+from railsym.cli_pair import add_contact, profile_pair
 from railsym.cli_values import CommandError, quantity
 
 _SEED = 1
@@ -49,14 +49,14 @@ def add_tilt(commands, typed, add_vehicle, add_output):
 def run(options):
     """Run the study and show what it found."""
     from railsym.cli_modes import _configured
-    from railsym.cli_switch import _pair
     from railsym.studies.tilt import COACH, OFFSET, SPEED, tilt_study
+    from railsym.studies.tilt_report import as_data
     from railsym.vehicle import load_vehicle
 
     check_plot_path(options.plot)
     _check_animation(options.animate)
     vehicle = _configured(load_vehicle(options.vehicle), options.configuration)
-    pair, _ = _pair(options, vehicle)
+    pair, _ = profile_pair(options, vehicle)
     parameters, sensors = _control(options)
     speed = SPEED if options.speed is None else options.speed
     if not speed > 0.0:
@@ -65,14 +65,7 @@ def run(options):
                        faults=options.faults, sensitivity=options.sensitivity, coach=COACH if options.coach is None else options.coach,
                        offset=OFFSET if options.database_offset is None else options.database_offset, law=options.law, friction=options.friction,
                        dt=options.step, channels=_drawn(options, vehicle), progress=sys.stderr.isatty())
-    if options.json != "-":
-        say(str(study))
-    if options.json:
-        from railsym.studies.tilt_report import as_data
-
-        write_json(as_data(study), options.json)
-    if options.plot:
-        save_plot(study.plot, options.plot)
+    deliver(options, lambda: str(study), lambda: as_data(study), study.plot)
     if options.animate:
         from railsym.plots.tilt_animation import animate_tilt
 

@@ -13,16 +13,16 @@ from derive.tape import LawCall
 SEEDS = {name: sm.Symbol(name, real=True) for name in ("cq", "cu", "ca")}
 
 
-def at_state(kernel, given, default=0):
+def at_state(kernel, given, default):
     """Residual and pencil of a kernel where inputs have given values.
 
     Parameters
     ----------
     kernel : derive.tangent.Kernel
     given : dict of str to sympy expression or number
-        By the names of inputs. An input whose name stands for itself stays a symbol.
-    default : callable or number
-        Value of the inputs that are not in ``given``: a number, or a function of the `Input`.
+        By the names of inputs.
+    default : callable
+        Value of each other `Input`, such as `at_rest`.
 
     Returns
     -------
@@ -30,7 +30,7 @@ def at_state(kernel, given, default=0):
     pencil : Matrix (rows, columns)
         In the seeds cq, cu, ca.
     """
-    values = {entry.symbol: sm.sympify(given.get(str(entry.symbol), default(entry) if callable(default) else default)) for entry in kernel.tape.inputs}
+    values = {entry.symbol: sm.sympify(given.get(str(entry.symbol), default(entry))) for entry in kernel.tape.inputs}
     _evaluate(kernel.tape.lines, values)
     _evaluate(kernel.partials, values)
     for lines in kernel.columns:
@@ -67,8 +67,6 @@ _MOVING = ("displacement", "angular velocity", "rate of", "speed of the track fr
 def _identity(entry):
     """1 and 0 for a rotation matrix, else the symbol."""
     name = str(entry.symbol)
-    if entry.meaning == "-" and name[-2:].isdigit():                       # Tape.matrix: no meaning but its own
-        return entry.symbol
     if entry.unit == "-" and name[-2:].isdigit() and name[:-2] in ("C", "A1_", "A2_"):
         return int(name[-2] == name[-1])
     return entry.symbol

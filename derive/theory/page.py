@@ -10,6 +10,7 @@ from derive.theory.notation import code, input_table, latex, matrix
 
 _BODY = ("x", "y", "z", "yaw", "roll", "pitch")
 _WHEEL = ("x", "y", "z", "yaw", "roll", "spin")
+_SPINNING = {"u_spin": -sm.Symbol("Omega", real=True)}
 
 _METHOD = r"""# Theory: the equations of the kernels
 
@@ -45,11 +46,9 @@ kernels, not derived again.
 def page(kernels):
     """Text of docs/theory.md."""
     by_name = {kernel.tape.name: kernel for kernel in kernels}
-    parts = [_METHOD, _body(by_name["rigid_body"], _BODY, {}, "Rigid body"),
-             _body(by_name["wheelset"], _WHEEL, {"u_spin": -sm.Symbol("Omega", real=True)},
-                   "Wheelset", "It turns at $\\dot q_{\\mathrm{spin}} = -\\Omega$ about its axle, $\\Omega = V/r_0$ when it rolls: the damping matrix is that of the gyroscopic moments."),
-             _body(by_name["wheelset_with_axleboxes"], (*_WHEEL, "pitch of the left axlebox", "pitch of the right one"), {"u_spin": -sm.Symbol("Omega", real=True)},
-                   "Wheelset with two axleboxes", "Without products of inertia, axleboxes centred on the axle at $\\pm b$ and alike.", _alike_boxes()),
+    parts = [_METHOD, _body(by_name["rigid_body"], _BODY, "Rigid body"),
+             _body(by_name["wheelset"], _WHEEL, "Wheelset", "It turns at $\\dot q_{\\mathrm{spin}} = -\\Omega$ about its axle, $\\Omega = V/r_0$ when it rolls: the damping matrix is that of the gyroscopic moments.", _SPINNING),
+             _body(by_name["wheelset_with_axleboxes"], (*_WHEEL, "pitch of the left axlebox", "pitch of the right one"), "Wheelset with two axleboxes", "Without products of inertia, axleboxes centred on the axle at $\\pm b$ and alike.", _SPINNING | _alike_boxes()),
              _bushing(by_name["bushing"]), _law_element(by_name["line"], "Line element", {}),
              _law_element(by_name["axis"], "Axis element", {"ax0": 1, "ax1": 0, "ax2": 0}), _wheel_rail(by_name["wheel_rail"])]
     return "\n".join(line.rstrip() for line in "\n".join(parts).splitlines()) + "\n"
@@ -71,8 +70,8 @@ def _alike_boxes():
     return given
 
 
-def _body(kernel, coordinates, moving, title, remark="", given=None):
-    _, pencil = at_state(kernel, {**(given or {}), **moving}, at_rest)
+def _body(kernel, coordinates, title, remark="", given=None):
+    _, pencil = at_state(kernel, given or {}, at_rest)
     stiffness, damping, mass = matrices(pencil)
     lines = _head(kernel, title) + ["**About the design position.** " + remark, "", *matrix("Mass", mass, coordinates), "", *matrix("Damping", damping, coordinates), "",
                                     *matrix("Stiffness", stiffness, coordinates), ""]
@@ -95,7 +94,7 @@ def _law_element(kernel, title, given):
     length = sm.Symbol("L", real=True)
     here = {f"{name}{k}": 0 for name in ("m1_", "m2_") for k in range(3)} | {"D0": sm.Abs(length), "D1": 0, "D2": 0, "s": 0, "ds": 0} | given
     _, pencil = at_state(kernel, here, at_rest)
-    stiffness, damping, _ = (entry[:3, :3] for entry in matrices(sm.simplify(pencil.extract(range(3), range(3)).row_join(sm.zeros(3, 9)))))
+    stiffness, damping, _ = matrices(sm.simplify(pencil[:3, :3]))
     names = tuple(f"{name} of body 1" for name in _BODY)
     lines = _head(kernel, title) + ["`law` is the scalar force law of the element, f(e, de/dt, s, ds/dt), and its state equation g = 0 (`csrc/laws.h`, [vehicle_file.md](vehicle_file.md)); "
                                     "f_e, f_v, ... are its slopes.", "",
